@@ -6,7 +6,7 @@ TESTS ?= tests
 # A process of tests for each core: to collect the tests costs each of them as much as hundreds of tests.
 WORKERS ?= $(shell getconf _NPROCESSORS_ONLN)
 
-.PHONY: demo test test-all properties check lint format bench mutants fuzz golden covered size language pages lock audit sbom dist test-lowest clean
+.PHONY: demo test test-all properties check lint format bench mutants fuzz golden covered size language pages lock audit sbom docs vscode dist release test-lowest clean
 .DEFAULT_GOAL := help
 
 .PHONY: help
@@ -26,6 +26,9 @@ help:
 	@echo "make language  renew what follows from the description of the language in language/"
 	@echo "make lock      renew the versions and hashes in ci/locked, of all packages that CI and the actions install"
 	@echo "make audit     look up known holes in these packages; make sbom lists them with their licences"
+	@echo "make docs      make a site of the manual, with each link held: archgen-out/manual/index.html"
+	@echo "make vscode    check and pack the extension for Visual Studio Code: archgen-out/archgen.vsix"
+	@echo "make release VERSION=1.2.3  write the version; docs/releasing.md goes on"
 	@echo "make dist      build the wheel and the sdist of the last commit, the same bytes everywhere"
 	@echo "make test-lowest  the tests of what is written, with the lowest versions of packages that are allowed"
 	@echo "make pages     renew what is generated: rule pages, interface data, the page of the ROS library"
@@ -114,7 +117,16 @@ sbom: .make/supply
 	mkdir -p archgen-out
 	.make/supply-tools/bin/cyclonedx-py environment --output-reproducible --pyproject pyproject.toml -o archgen-out/sbom.json .make/sbom/bin/python
 
-# Tests with the lowest versions that pyproject.toml allows.
+docs: .make/docs
+	NO_MKDOCS_2_WARNING=1 .make/docs-tools/bin/mkdocs build --strict --quiet
+	@echo "Open archgen-out/manual/index.html"
+
+# The extension: its types, its tests against a stand-in of the editor, and the packed file.
+vscode:
+	npm install --prefix editors/vscode --no-package-lock --no-audit --no-fund --loglevel=error
+	cd editors/vscode && npm run --silent bundle && npm run --silent check && npm run --silent package
+	mkdir -p archgen-out && mv editors/vscode/archgen.vsix archgen-out/
+
 # The wheel and the sdist of the last commit: whoever builds it again, anywhere, gets the same bytes.
 dist: .make/test
 	rm -rf dist .make/dist && mkdir -p .make/dist
@@ -122,6 +134,11 @@ dist: .make/test
 	SOURCE_DATE_EPOCH=$$(git log -1 --format=%ct) $(BIN)/python -m build --no-isolation --outdir dist .make/dist
 	rm -rf .make/dist
 
+# The version into the package and CHANGELOG.md; docs/releasing.md says what comes next.
+release:
+	python3 tools/cut_release.py $(VERSION)
+
+# Tests with the lowest versions that pyproject.toml allows.
 test-lowest: .make/test
 	sh tools/test_lowest_versions.sh
 
@@ -180,6 +197,11 @@ endif
 .make/supply: ci/locked/supply.txt
 	mkdir -p .make && $(PYTHON) -m venv .make/supply-tools
 	.make/supply-tools/bin/python -m pip install --quiet --disable-pip-version-check --require-hashes --requirement ci/locked/supply.txt
+	touch $@
+
+.make/docs: ci/locked/docs.txt
+	mkdir -p .make && $(PYTHON) -m venv .make/docs-tools
+	.make/docs-tools/bin/python -m pip install --quiet --disable-pip-version-check --require-hashes --requirement ci/locked/docs.txt
 	touch $@
 
 # What the other tests need: browsers, an office, compilers and the judges.

@@ -13,12 +13,13 @@ from __future__ import annotations
 
 from os import PathLike, fspath
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from archgen import pipeline
 from archgen.analyses import size_counts as size_analysis
 from archgen.checking import code_ownership
 from archgen.diagnostics.diagnostic import Diagnostic
-from archgen.frozen import dataclass
+from archgen.frozen import dataclass, replace
 from archgen.model.architecture import Architecture
 from archgen.model.selector_evaluation import Selection
 from archgen.pipeline import CheckedProject
@@ -32,10 +33,13 @@ from archgen.products.output_options import OutputOptions
 from archgen.simulation.chain_witnesses import judge_chains
 from archgen.timing.analysis import Analysis, ChainResult
 from archgen.timing.run_analysis import analyse_architecture
-from archgen.views.pages.report_outline import DetailLevel
+from archgen.views.pages.report_outline import DetailLevel, ReportDocument
 from archgen.views.partner_ownership import Ownership
 from archgen.views.records import resolved_record
 from archgen.views.shapes import Record
+
+if TYPE_CHECKING:
+    from networkx import MultiDiGraph
 
 AnyPath = str | PathLike[str]
 
@@ -107,20 +111,49 @@ class Project:
         """Return the resolved model, or the selected part of it, as plain data (`schemas/resolved.schema.json`)."""
         return resolved_record.make_record(project_views.make_scoped_lookup(self.checked, self._output_options(select)))
 
-    def write_report(
+    def rows(self, kind: str, select: str | None = None) -> list[dict[str, str]]:
+        """Return what `archgen list --of KIND` lists, a dict a row. Raises KeyError for another kind."""
+        columns, rows = project_views.list_rows(self.checked, self._output_options(select), kind)
+        return [dict(zip(columns, row, strict=True)) for row in rows]
+
+    def graph(self, select: str | None = None) -> MultiDiGraph:
+        """Return who reads whom as a graph of networkx (`pip install 'archgen[graph]'`).
+
+        Its nodes are the ids of components, with what `rows("components")` says of them; its edges have the row of
+        `rows("edges")`, and their output and input as key. What lies outside of a selection is left out.
+        """
+        from networkx import MultiDiGraph
+
+        graph = MultiDiGraph(name=self.architecture.project.title)
+        for row in self.rows("components", select):
+            graph.add_node(row["id"], **row)
+        for row in self.rows("edges", select):
+            ends = row["output"], row["input"]
+            giver, taker = self.architecture.outputs[ends[0]].component, self.architecture.inputs[ends[1]].component
+            if giver in graph and taker in graph:
+                graph.add_edge(giver, taker, key=ends, **row)
+        return graph
+
+    def write_report(  # noqa: PLR0913 - what may be asked for
         self,
         file: AnyPath,
         *,
         template: AnyPath | None = None,
+        document: ReportDocument = "deliverable",
         select: str | None = None,
         level: DetailLevel | None = None,
         revision: str | None = None,
     ) -> None:
-        """Write the Word report. Raises OSError, and `emit.tree.OutputError` for what the user can fix."""
+        """Write the report, or another of its documents: `data-sheets`, `workbook` (.xlsx), `full`.
+
+        Raises OSError, and `emit.tree.OutputError` for what the user can fix.
+        """
+        options = replace(self._output_options(select, level, revision), document=document)
+        if document == "workbook":
+            project_outputs.write_report_workbook(self.checked, options, Path(fspath(file)))
+            return
         template_path = Path(fspath(template)) if template is not None else None
-        project_outputs.write_report(
-            self.checked, self._output_options(select, level, revision), Path(fspath(file)), template_path
-        )
+        project_outputs.write_report(self.checked, options, Path(fspath(file)), template_path)
 
     def write_site(
         self,

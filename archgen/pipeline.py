@@ -102,10 +102,16 @@ def check_tracked_project(
         return judge_project(loaded_project, version_cache)
 
 
-def check_loaded_project(loaded_project: LoadedProject, version_cache: VersionCache) -> CheckedProject:
-    """Check a project that is loaded already."""
+def check_loaded_project(
+    loaded_project: LoadedProject,
+    version_cache: VersionCache,
+    variants: Sequence[str] | None = None,
+    *,
+    has_timing: bool = True,
+) -> CheckedProject:
+    """Check a project that is loaded already; `variants` as for `check_project`."""
     with _pause_garbage_collection():
-        return judge_project(loaded_project, version_cache)
+        return judge_project(loaded_project, version_cache, variants, has_timing=has_timing)
 
 
 @contextmanager
@@ -148,15 +154,19 @@ def judge_project(
     loaded_project: LoadedProject,
     version_cache: VersionCache | None = None,
     variant_names: Sequence[str] | None = None,
+    *,
+    has_timing: bool = True,
 ) -> CheckedProject:
     """Run all stages on a loaded project, up to its findings; of one with variants, on it in each of them, too.
 
     `variant_names` are those that are asked for, None for all of them. What `version_cache` knows is not made anew; without
-    one, nothing is remembered for another version.
+    one, nothing is remembered for another version. Without `has_timing` the rules that need its analysis find nothing.
 
     No stage stops at errors: each yields its diagnostics and passes on what is sound.
     """
     analysis_memory = version_cache.analysis_memory if version_cache else AnalysisMemory()
     part_memory = version_cache.part_memory if version_cache else None
-    checked_project = judge_in_variants(merge_project(loaded_project), analysis_memory, variant_names, part_memory)
+    checked_project = judge_in_variants(
+        merge_project(loaded_project), analysis_memory if has_timing else None, variant_names, part_memory
+    )
     return add_codeowners_age(read_origins(checked_project))

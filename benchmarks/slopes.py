@@ -42,6 +42,13 @@ _VERBS: dict[str, tuple[str, ...]] = {
     "review": ("review", "{project}", "--no-build", "-o", "{out}/review"),
     "transform flatten": ("transform", "flatten", "-C", "{project}", "-o", "{out}/flat.yaml"),
     "new": ("new", "component", "g0.added", "-C", "{project}"),
+    "fmt": ("fmt", "--diff", "{project}"),
+    "rename": ("rename", "g0.c0", "fresh", "--dry-run", "-C", "{project}"),
+    "move": ("move", "g0.c0", "--file", "moved.yaml", "--dry-run", "-C", "{project}"),
+    "split": ("split", "groups/g0.yaml", "--by", "component", "--dry-run", "-C", "{project}"),
+    "todo": ("todo", "{project}", "--partner", "p0"),
+    "impact": ("impact", "{project}", "--partner", "p0"),
+    "conform": ("conform", "{project}", "--against", "{graph}"),
     "diagram": ("diagram", "{project}", "-o", "{out}/diagrams"),
     "site": ("site", "{project}", "-o", "{out}/site"),
     "report": ("report", "{project}", "-o", "{out}/report.docx"),
@@ -56,6 +63,8 @@ _VERBS: dict[str, tuple[str, ...]] = {
         for name in ("aadl", "nodl", "ros2_python", "ros2_launch", "start")
     },
 }
+_GRAPH = "$ ros2 node list\n/stranger\n"
+"""A robot on which nothing runs that the project names: `archgen conform` tells of each node that is not there."""
 _ENVIRONMENT = {name: value for name, value in os.environ.items() if name != "PYTHONDONTWRITEBYTECODE"}
 
 
@@ -102,13 +111,19 @@ def _make_project(dimension: str, size: int, place: Path) -> Path:
     file.write_text(
         file.read_text(encoding="utf-8").replace("title: Component 0.0", "title: Other", 1), encoding="utf-8"
     )
+    (folder.parent / "graph.txt").write_text(_GRAPH, encoding="utf-8")
     return folder
 
 
 def _measure_sizes(verb: str, projects: list[Path], limit: float) -> Iterator[Figures]:
     for project in projects:
         with tempfile.TemporaryDirectory() as out:
-            places = {"project": str(project), "changed": str(project.parent / "changed"), "out": out}
+            places = {
+                "project": str(project),
+                "changed": str(project.parent / "changed"),
+                "graph": str(project.parent / "graph.txt"),
+                "out": out,
+            }
             figures = measure_command([word.format(**places) for word in _VERBS[verb]], Path(out), limit)
         yield figures
         if figures.failure:

@@ -108,7 +108,18 @@ def pytest_configure(config: pytest.Config) -> None:
     forked_templates.fork_templates(config)
 
 
-_LONGEST = frozenset({"test_slopes", "test_interpreters", "test_fuzz_run", "test_wheel", "test_faults"})
+_LONGEST = frozenset(
+    {
+        "test_slopes",
+        "test_interpreters",
+        "test_fuzz_run",
+        "test_wheel",
+        "test_faults",
+        "test_random_branches",
+        "test_merged_workspaces",
+        "test_ros1_running",
+    }
+)
 """Modules with tests that take a minute and more."""
 _LEFT_OUT = Counter[str]()
 _HIDING = pytest.StashKey[ToolHiding]()

@@ -30,6 +30,20 @@ PRINTED = (
     "owners",
     "diff HEAD~1 HEAD",
     "interfaces --between p q",
+    "todo --partner p",
+    "todo --partner q --format json --since HEAD~1",
+    "impact --partner p --format markdown",
+    "impact --partner q --format json",
+    "fmt --diff",
+    "rename watcher guard --dry-run",
+    "move lamp --file lamps/lamp.yaml --dry-run --format json",
+    "split watching.yaml --by component --dry-run",
+    "merge-check HEAD~1 HEAD",
+    "merge-check HEAD~1 HEAD --format json",
+    "conform --against ../graph.txt --format json",
+    "show watcher",
+    "list --of requirements --format json",
+    "stats --history",
 )
 WRITTEN = (
     "build --backend wiki --no-history -o {out}/build",
@@ -41,9 +55,22 @@ WRITTEN = (
     "review --base HEAD~1 -o {out}/review",
     "interfaces --between p q -o {out}/interfaces.docx",
     "interfaces --between p q -o {out}/interfaces.html",
+    "schema -o {out}/schema.json",
 )
 ENDINGS = {"reqif": ".reqif", "xmi": ".xmi"}
 """Where the ending of a file's name says which of its forms is wanted."""
+_GRAPH = """\
+$ ros2 node list
+/watcher
+/stranger
+$ ros2 node info /watcher
+/watcher
+  Subscribers:
+    /way: nav_msgs/msg/Path
+  Publishers:
+    /alarm: std_msgs/msg/String
+"""
+"""A robot that is otherwise in some ways."""
 SIGNING = "sign p q --by p Ada --by q Ben --date 2026-03-01 -o {out}/signed.docx"
 
 
@@ -70,6 +97,8 @@ def make_every_output(project: Path, out: Path) -> None:
     """Make everything in a folder; printed text comes into files, too."""
     os.chdir(project)
     (out / "printed").mkdir(parents=True)
+    # Beside the project, in whatever folder that lies: findings say the way from one to the other.
+    (project.parent / "graph.txt").write_text(_GRAPH, "utf-8")
     backends = json.loads(call(["list", "--of", "backends", "--format", "json"])[1])
     passes = [line.partition(":")[0] for line in call(["transform", "--list"])[1].splitlines() if line[0] != " "]
     verbs = [*WRITTEN]

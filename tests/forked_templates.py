@@ -20,15 +20,15 @@ import pytest
 
 from archgen.emit import text
 
-# Answers each request (three descriptors: the child's input, output and errors) with the child's number, and with its status
-# when it ended.
+# Answers each request (eight bytes, and three descriptors: the child's input, output and errors) with these bytes and the child's
+# number, and again with its status when it ended.
 _FORKING_CODE = """
 import os, socket, sys
 sys.path.insert(0, sys.argv[1])
 from archgen.emit.text.template_worker import main
 channel = socket.socket(fileno=int(sys.argv[2]))
 while True:
-    request, descriptors, _, _ = socket.recv_fds(channel, 1, 3)
+    request, descriptors, _, _ = socket.recv_fds(channel, 8, 3)
     if not request:
         break
     child = os.fork()
@@ -39,9 +39,9 @@ while True:
         main()
     for descriptor in descriptors:
         os.close(descriptor)
-    channel.sendall(child.to_bytes(8, "little"))
+    channel.sendall(request + child.to_bytes(8, "little"))
     status = os.waitstatus_to_exitcode(os.waitpid(child, 0)[1])
-    channel.sendall(status.to_bytes(8, "little", signed=True))
+    channel.sendall(request + status.to_bytes(8, "little", signed=True))
 """
 
 
@@ -63,22 +63,31 @@ class _ForkingProcess:
             given.write(request)
             given.seek(0)
             output, errors = os.pipe(), os.pipe()
-            socket.send_fds(self._channel, [b"r"], [given.fileno(), output[1], errors[1]])
+            key = os.urandom(8)
+            socket.send_fds(self._channel, [key], [given.fileno(), output[1], errors[1]])
             os.close(output[1])
             os.close(errors[1])
-            child = int.from_bytes(self._channel.recv(8), "little")
+            child = self._take_answer(key)
             reading = [readers.submit(_read_all, end[0]) for end in (output, errors)]
             self._channel.settimeout(seconds)
             try:
-                status = int.from_bytes(self._channel.recv(8), "little", signed=True)
+                status = self._take_answer(key)
             except TimeoutError:
                 os.kill(child, 9)
                 self._channel.settimeout(None)
-                self._channel.recv(8)
+                self._take_answer(key)
                 raise subprocess.TimeoutExpired(command, seconds) from None
             self._channel.settimeout(None)
             said, complained = (each.result() for each in reading)
             return subprocess.CompletedProcess(command, status, said, complained)
+
+    def _take_answer(self, key: bytes) -> int:
+        """Return the next answer to a request; answers to one that was interrupted are passed over."""
+        while (answer := self._channel.recv(16))[:8] != key:
+            if not answer:
+                message = "the process of templates ended"
+                raise ConnectionError(message)
+        return int.from_bytes(answer[8:], "little", signed=True)
 
     def end(self) -> None:
         """End the process."""

@@ -31,7 +31,7 @@ FILLED_KINDS = SCHEMA["$defs"].keys() & {"project", *ENTRIES.values()} & KEYS.ke
 """Kinds that are filled with text: the project, and what is written by ids; values of parameters are data."""
 NAMES = {
     *(("node", "name"), ("node", "namespace"), ("container", "name"), ("container", "namespace")),
-    *(("view", "show"), ("forbid", "from"), ("forbid", "to"), ("variant", "without")),
+    *(("view", "show"), ("forbid", "from"), ("forbid", "to"), ("variant", "without"), ("milestone", "needs")),
 }
 """Text by the schema, but with a grammar of their own."""
 

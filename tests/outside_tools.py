@@ -8,6 +8,7 @@ their helpers. A test that runs such a program in another way fails, since the p
 from __future__ import annotations
 
 import dis
+import importlib
 import json
 import os
 import shutil
@@ -143,6 +144,9 @@ def _read_function(function: FunctionType) -> tuple[frozenset[str], tuple[Functi
         marks.add("ros")
     values = [function.__globals__[name] for name in names if name in function.__globals__]
     # What is imported inside of a function, and what is asked of a module.
+    # Among a few tests nobody else has imported it.
+    for name in filter(_is_of_tests, names):
+        importlib.import_module(name)
     modules = [module for name in names if isinstance(module := sys.modules.get(name), ModuleType)]
     modules += [value for value in values if isinstance(value, ModuleType)]
     values += [getattr(module, name, None) for module in modules if _is_of_tests(module.__name__) for name in names]

@@ -68,6 +68,8 @@ def _runs(paragraph: etree._Element) -> Iterator[str]:
             yield "#" if paged else part.text or ""
         elif part.tag in {f"{WORD}tab", f"{WORD}br"} and part.getparent().tag == f"{WORD}r":  # type: ignore[union-attr]
             yield " · "
+        elif part.tag == f"{WORD}noBreakHyphen":
+            yield "-"
         elif part.tag == f"{DRAWING}docPr":
             yield f"(picture: {part.get('descr')})"
 

@@ -7,6 +7,7 @@ import re
 import warnings
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from functools import cache
 from pathlib import Path
 from typing import Any, TypeGuard
 
@@ -18,6 +19,8 @@ ROOT = Path(__file__).resolve().parent.parent
 FUNCTIONS = ("compile", "match", "fullmatch", "search", "sub", "subn", "split", "findall", "finditer")
 REPEATS = (_constants.MAX_REPEAT, _constants.MIN_REPEAT, _constants.POSSESSIVE_REPEAT)
 ENDINGS = ("", "\0", "\n!")
+_WRITTEN_CALL = re.compile(rf"\bre\.(?:{'|'.join(FUNCTIONS)})\(")
+"""As ruff lays out each call: what holds none of them need not be parsed."""
 USUAL_CHARACTERS = " \n\taAz09é-_/.,:;$#<>()[]{}\"'\\=!\0"
 
 
@@ -30,38 +33,38 @@ class Expression:
     methods: tuple[str, ...]
 
 
-def list_expressions() -> list[Expression]:
+@cache
+def list_expressions() -> tuple[Expression, ...]:
     """List what the package compiles: at the top of a module or a class by its value, within a function by its literal."""
-    expressions = []
-    for path in sorted((ROOT / "archgen").rglob("*.py")):
-        if "assets" in path.parts:
-            continue
-        tree = ast.parse(path.read_text(encoding="utf-8"))
-        if "re" not in {name.name for node in ast.walk(tree) if isinstance(node, ast.Import) for name in node.names}:
-            continue
-        place = path.relative_to(ROOT).as_posix()
-        module = importlib.import_module(place.removesuffix(".py").removesuffix("/__init__").replace("/", "."))
-        called = _list_called_methods(tree)
-        named = {
-            f"{name}{index or ''}": pattern
-            for name, value in vars(module).items()
-            for index, pattern in enumerate(_walk_patterns(value))
-        }
-        imported = {
-            name.asname or name.name for node in tree.body if isinstance(node, ast.ImportFrom) for name in node.names
-        }
-        expressions += [
-            Expression(f"{place}:{name}", named[name], tuple(sorted(called.get(name, ()))))
-            for name in sorted(set(named) - imported)
-        ]
-        seen = {(value.pattern, value.flags) for value in named.values()}
-        for node in ast.walk(tree):
-            expressions += [
-                expression
-                for expression in _compile_literals(place, node)
-                if (expression.pattern.pattern, expression.pattern.flags) not in seen
-            ]
-    return expressions
+    return tuple(expression for place, tree in _read_modules() for expression in _list_expressions_of(place, tree))
+
+
+@cache
+def _read_modules() -> tuple[tuple[str, ast.Module], ...]:
+    """Read the modules that call `re`, each with its place."""
+    files = [path for path in sorted((ROOT / "archgen").rglob("*.py")) if "assets" not in path.parts]
+    texts = {path.relative_to(ROOT).as_posix(): path.read_text(encoding="utf-8") for path in files}
+    return tuple((place, ast.parse(text)) for place, text in texts.items() if _WRITTEN_CALL.search(text))
+
+
+def _list_expressions_of(place: str, tree: ast.Module) -> Iterator[Expression]:
+    module = importlib.import_module(place.removesuffix(".py").removesuffix("/__init__").replace("/", "."))
+    called = _list_called_methods(tree)
+    named = {
+        f"{name}{index or ''}": pattern
+        for name, value in vars(module).items()
+        for index, pattern in enumerate(_walk_patterns(value))
+    }
+    imported = {
+        name.asname or name.name for node in tree.body if isinstance(node, ast.ImportFrom) for name in node.names
+    }
+    for name in sorted(set(named) - imported):
+        yield Expression(f"{place}:{name}", named[name], tuple(sorted(called.get(name, ()))))
+    seen = {(value.pattern, value.flags) for value in named.values()}
+    for node in ast.walk(tree):
+        for expression in _compile_literals(place, node):
+            if (expression.pattern.pattern, expression.pattern.flags) not in seen:
+                yield expression
 
 
 def _walk_patterns(value: object) -> Iterator[re.Pattern[Any]]:
@@ -79,11 +82,10 @@ def _walk_patterns(value: object) -> Iterator[re.Pattern[Any]]:
 def list_made_expressions() -> list[str]:
     """List where functions make expressions of what they are given: a file and the function around, as it is called there."""
     places = set()
-    for path in sorted((ROOT / "archgen").rglob("*.py")):
-        tree = ast.parse(path.read_text(encoding="utf-8"))
+    for place, tree in _read_modules():
         for function in [node for node in ast.walk(tree) if isinstance(node, ast.FunctionDef)]:
             if any(_is_call(node) and not isinstance(node.args[0], ast.Constant) for node in ast.walk(function)):
-                places.add(f"{path.relative_to(ROOT).as_posix()}:{function.name}")
+                places.add(f"{place}:{function.name}")
     return sorted(places)
 
 

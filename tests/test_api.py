@@ -96,3 +96,25 @@ def test_what_it_writes(project: Project, tmp_path: Path) -> None:
 def test_an_agreement_has_one_of_three_formats(project: Project, tmp_path: Path) -> None:
     with pytest.raises(ValueError, match=r"the ending of `a.pdf` names no format: .docx, .md, .html or .json"):
         project.write_agreement(tmp_path / "a.pdf", "p", "q")
+
+
+def test_rows_are_those_of_list(project: Project) -> None:
+    (edge,) = project.rows("edges")
+    assert (edge["output"], edge["input"], edge["message"]) == (
+        "sensing.camera.image",
+        "acting.arm.image",
+        "sensor_msgs/msg/Image",
+    )
+    assert [row["id"] for row in project.rows("components", select="owner:q")] == ["acting.arm"]
+    with pytest.raises(KeyError):
+        project.rows("nonsense")
+
+
+def test_the_graph_has_components_with_attributes_and_an_edge_for_each_connection(project: Project) -> None:
+    graph = project.graph()
+    assert graph.nodes["sensing.camera"]["owner"] == "p"
+    ((giver, taker, key),) = graph.edges(keys=True)
+    assert (giver, taker, key) == ("sensing.camera", "acting.arm", ("sensing.camera.image", "acting.arm.image"))
+    assert graph.edges[giver, taker, key]["message"] == "sensor_msgs/msg/Image"
+    assert list(project.graph("owner:q")) == ["acting.arm"]
+    assert project.graph("owner:q").number_of_edges() == 0

@@ -66,6 +66,7 @@ def test_two_builds_are_the_same_bytes(ramcip: Path, moved: Path) -> None:
     assert [path for path, data in first.items() if second[path] != data] == []
 
 
+@pytest.mark.slow
 def test_pictures_in_every_format_are_the_same_bytes(moved: Path, tmp_path: Path) -> None:
     wanted = ("--format", "svg,png,pdf,dot", "--only", "overview", "--only", "groups/human_*", "--only", "hosts")
     archgen("diagram", RAMCIP, *wanted, "-o", "a", cwd=tmp_path, env={"XDG_CACHE_HOME": str(tmp_path / "1")})
@@ -108,6 +109,7 @@ def test_packing_again_gives_the_same_bytes(unpacked: Path) -> None:
     assert (unpacked / "again.yaml").read_bytes() == (unpacked / "ramcip.yaml").read_bytes()
 
 
+@pytest.mark.slow
 def test_the_packed_file_has_the_same_size_and_progress(unpacked: Path) -> None:
     folder, packed = (
         json.loads(archgen_here("stats", project, "--format", "json", cwd=unpacked).stdout)

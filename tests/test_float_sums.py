@@ -11,10 +11,21 @@ FILES = sorted(file for room in ("emit", "views", "plugins") for file in (ROOT /
 WHOLE_NUMBERS = frozenset(
     {
         ("archgen/emit/docx/table_pieces.py", "sum(widths)"),
+        ("archgen/emit/font_subset.py", "sum(words)"),
+        ("archgen/emit/pptx/slide_template.py", "sum(bytes.fromhex(digits))"),
+        (
+            "archgen/plugins/recordings/bag_observation.py",
+            "sum((each.stat().st_size for each in _list_regular_files(path)))",
+        ),
+        ("archgen/views/timing/element_timing.py", "sum(times.values())"),
+        ("archgen/emit/graphviz/box_styles.py", "sum((width + gap for width, _ in cells))"),
+        ("archgen/views/search/entry_ranking.py", "sum(ranks)"),
+        ("archgen/views/graphs/group_columns.py", "sum([place[each] for each in near])"),
+        ("archgen/views/sequences/lane_sheets.py", "sum((abs(places[one] - places[other]) for one, other in ways))"),
         ("archgen/plugins/ros/sources/walk_values.py", "sum(map(measure_value, self.parts))"),
     }
 )
-"""Sums of integers (twips, characters) that do not look like it."""
+"""Sums of integers (twips, characters, places, bytes) and fractions that do not look like it."""
 COUNTS = (ast.Compare, ast.BoolOp, ast.Constant, ast.UnaryOp)
 
 

@@ -1,4 +1,4 @@
-"""Generators of packages that others install: the example of docs/generation.md, and packages that are no good."""
+"""Generators of packages that others install: the example of docs/own_generators.md, and packages that are no good."""
 
 from __future__ import annotations
 
@@ -36,7 +36,7 @@ OWN_BACKEND = """\
 
 def install(folder: Path, *changes: tuple[str, str]) -> None:
     """Put the package of the page into a folder as an installer does, with some words changed."""
-    page = (ROOT / "docs" / "generation.md").read_text("utf-8").partition("\n## Views in Python\n")[2]
+    page = (ROOT / "docs" / "own_generators.md").read_text("utf-8").partition("\n## Views in Python\n")[2]
     for written in re.findall(r"```\w+\n(.*?)```", page.partition("\n## ")[0], re.DOTALL):
         text = written
         for old, new in changes:

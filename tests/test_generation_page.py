@@ -1,4 +1,4 @@
-"""The generator of docs/generation.md works as the page says."""
+"""The generator of docs/own_generators.md works as the page says."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ groups: {g: {components: {a: {functionality: Grips., outputs: {grip: Grip}}, b: 
 @pytest.fixture
 def robot(tmp_path: Path) -> Path:
     """Make a project with the generator of the page."""
-    page = (ROOT / "docs" / "generation.md").read_text("utf-8")
+    page = (ROOT / "docs" / "own_generators.md").read_text("utf-8")
     for text in re.findall(r"```(?:yaml|jinja)\n(.*?)```", page, re.DOTALL):
         path = tmp_path / text.splitlines()[0].strip("#{} ")
         path.parent.mkdir(parents=True, exist_ok=True)
@@ -40,7 +40,7 @@ def test_the_generator_of_the_page(run: Run, robot: Path) -> None:
     assert (ran.status, ran.err) == (0, "")
     stub = (workspace / "stubs" / "stub_grip.py").read_text()
     assert stub == (
-        "# Made by archgen from Grip (archgen.yaml:4:3).\n"
+        "# Made by archgen from Grip.\n"
         "class Grip:\n"
         "    comment = 'How \"wide\"\\nit is'\n\n"
         "    def __init__(self):\n"
@@ -57,11 +57,12 @@ def test_what_a_later_run_does(run: Run, robot: Path) -> None:
     run("generate", "message_stubs", "-C", robot, "-o", workspace)
     (robot / "archgen.yaml").write_text(PROJECT.replace("  Grip:", "  Mode: {values: [IDLE, RUN]}\n  Grip:"))
     (workspace / "run_all.sh").write_text("#!/bin/sh\n# mine\n")
+    (workspace / "own" / "convert.py").write_text("def read_grip(message):\n    return message.width\n")
     (workspace / "stubs" / "stub_mode.py").write_text("mine")
     ran = run("generate", "message_stubs", "-C", robot, "-o", workspace)
     assert ran.status == 1
     assert ran.err.splitlines() == [
-        "warning: own/convert.py: it lacks read_mode",
+        "error: own/convert.py:1:1: it lacks `read_mode`",
         (
             "error: run_all.sh was changed by hand since archgen wrote it, and stays as it is; `--overwrite run_all.sh` takes the "
             "new one, `--keep run_all.sh` keeps yours for good"
@@ -85,9 +86,9 @@ def test_what_a_later_run_does(run: Run, robot: Path) -> None:
         "--dry-run",
     )
     assert (ran.status, ran.out.splitlines()) == (
-        0,
+        1,
         [
-            "yours    own/convert.py  (it lacks read_mode)",
+            "yours    own/convert.py",
             "changed  run_all.sh",
             "yours    stubs/stub_grip.py",
             "yours    stubs/stub_mode.py",

@@ -1,4 +1,4 @@
-"""The table of generators in docs/generation.md holds what is counted today."""
+"""The table of generators in docs/quality.md holds what is counted today."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ import runpy
 from tests.running import ROOT
 
 TOOL = runpy.run_path(str(ROOT / "tools" / "generator_table.py"))
-PAGE = (ROOT / "docs" / "generation.md").read_text(encoding="utf-8")
+PAGE = (ROOT / "docs" / "quality.md").read_text(encoding="utf-8")
 
 
 def test_the_table_is_fresh() -> None:

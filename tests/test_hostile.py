@@ -56,6 +56,7 @@ def make(folder: Path, text: str) -> None:
     outputs = ("--backend", "wiki", "--revision", text[:80].replace("\0", ""), "-o", "../out")
     done = archgen_here("build", *outputs, cwd=folder / "project", env={"XDG_CACHE_HOME": str(folder / "cache")})
     (folder / "said.txt").write_bytes(done.stdout + done.stderr)
+    archgen_here("report", "--document", "full", "-o", "../out/full.docx", cwd=folder / "project")
 
 
 def files(project: Path, ending: str) -> Iterator[tuple[str, bytes]]:
@@ -177,7 +178,7 @@ def test_pictures_hold_nothing_active(project: Path) -> None:
         root = etree.fromstring(data)
         assert root.tag == "{http://www.w3.org/2000/svg}svg"
         assert active(etree.tostring(root).decode(), "style") == [], path
-    with zipfile.ZipFile(project.parent / "out" / "report.docx") as package:
+    with zipfile.ZipFile(project.parent / "out" / "full.docx") as package:
         bitmaps = [package.read(name) for name in package.namelist() if name.endswith(".png")]
     assert bitmaps
     assert all(data.startswith(b"\x89PNG") for data in bitmaps)

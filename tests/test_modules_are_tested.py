@@ -6,11 +6,12 @@ functions were executed. Before that, cheaply: the test exists, and imports lead
 
 from __future__ import annotations
 
+import itertools
 import json
 import os
 import subprocess
 import sys
-from collections.abc import Iterator, Mapping
+from collections.abc import Collection, Iterator, Mapping
 from contextlib import suppress
 from functools import cache
 from pathlib import Path
@@ -135,14 +136,25 @@ def _update_table(folder: Path) -> None:
             if not _find_too_small(_executed_shares({file: [module]}, folder / f"{number}-{test}")[file]):
                 rows.setdefault(file, set()).add(module)
                 break
-    head = TABLE.read_text(encoding="utf-8").partition("\n\n")[0]
+    TABLE.write_text(_write_rows(TABLE.read_text(encoding="utf-8"), rows), encoding="utf-8", newline="\n")
+
+
+def _write_rows(table: str, rows: Mapping[str, Collection[str]]) -> str:
+    """Return a table with other rows below the comment at its top."""
+    head = itertools.takewhile(lambda line: line.startswith("#"), table.splitlines())
     lines = [
         line
         for test in sorted(rows)
         if rows[test]
         for line in (f"{test}:", *(f"- {each}" for each in sorted(rows[test])))
     ]
-    TABLE.write_text("\n".join((head, "", *lines)) + "\n", encoding="utf-8", newline="\n")
+    return "\n".join((*head, *lines)) + "\n"
+
+
+def test_the_table_is_as_it_would_be_written_anew() -> None:
+    table = TABLE.read_text(encoding="utf-8")
+    assert _write_rows(table, COVERED_BY) == table
+    assert table.startswith("# ")
 
 
 def _measure_together(test: str, request: pytest.FixtureRequest, folder: Path) -> dict[str, float]:

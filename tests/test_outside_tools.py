@@ -6,8 +6,10 @@ import functools
 import re
 import shutil
 import subprocess
+import sys
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
+from pathlib import Path
 
 import pytest
 
@@ -67,6 +69,20 @@ def _ask_all() -> None:
 )
 def test_the_programs_that_a_test_asks_are_found_in_its_code(function: Callable[..., object], marks: set[str]) -> None:
     assert list_tool_marks([function]) == marks
+
+
+def _print_later() -> None:
+    from tests.emit.docx.judges import pages
+
+    pages(Path("nothing.docx"))
+
+
+_PRINT_LATER = functools.partial(_print_later)
+
+
+def test_what_a_function_imports_is_looked_into_where_nobody_else_imported_it(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.delitem(sys.modules, "tests.emit.docx.judges", raising=False)
+    assert list_tool_marks([_PRINT_LATER.func]) == {"office"}
 
 
 def test_who_asks_for_nothing_sees_no_program_from_outside() -> None:

@@ -10,6 +10,7 @@ import yaml
 from archgen.checking.checked_packing import pack_checked_project
 from archgen.passes.patterns.expressions import OPERATORS, TEST_FUNCTIONS, VALUE_FUNCTIONS
 from archgen.passes.patterns.pattern_registry import SHIPPED_PREFIX, find_known_passes
+from archgen.passes.patterns.view_values import VIEW_KEYS
 from archgen.pipeline import check_project
 from archgen.products.project_passes import choose_passes, transform_by_name
 from archgen.syntax.yaml_writer import write_yaml
@@ -21,7 +22,10 @@ PAGE = (ROOT / "docs" / "transformations.md").read_text(encoding="utf-8")
 def test_the_example_makes_what_the_page_says(tmp_path: Path) -> None:
     blocks = dict(re.findall(r"```yaml\n# (\S+)\n(.*?)```", PAGE, flags=re.DOTALL))
     wanted = yaml.safe_load(blocks.pop("result"))
-    assert sorted(blocks) == ["archgen.yaml", "passes/log_pictures.yaml"]
+    assert sorted(blocks) == [
+        "archgen.yaml",
+        *(f"passes/{name}.yaml" for name in ("log_network", "log_pictures", "move_navigation")),
+    ]
     for name, text in blocks.items():
         (tmp_path / name).parent.mkdir(exist_ok=True)
         (tmp_path / name).write_text(text, encoding="utf-8")
@@ -36,6 +40,7 @@ def test_the_page_names_all_there_is() -> None:
     for name in find_known_passes(None).passes:
         assert f"`{name}`" in PAGE, name
     assert f"`{SHIPPED_PREFIX}`" in PAGE
+    assert all(f"`{section}`" in PAGE for section in VIEW_KEYS)
     for word in (*VALUE_FUNCTIONS, *TEST_FUNCTIONS):
         assert f"`{word}(" in PAGE, word
     for word in OPERATORS:

@@ -205,6 +205,12 @@ def test_hostile_things_in_the_folder(tmp_path: Path) -> None:
         "d.yaml:1:1 syntax-error: this link leads out of the project's folder",
         "f.yaml:1:9 syntax-error: the byte 0xFF is not UTF-8",
     ]
+    # A file that is named itself may have been replaced by a branch under review, too.
+    assert findings(load_project(root / "d.yaml")) == [
+        "d.yaml:1:1 syntax-error: this link leads out of the project's folder"
+    ]
+    (root / "i.yaml").symlink_to("h.yaml")
+    assert names(load_project(root / "i.yaml")) == ["h.yaml"]
 
 
 @pytest.mark.parametrize("name", ["archgen.yaml", "robot.yaml"])

@@ -23,14 +23,16 @@ SECONDS_OF_LINEAR = 0.02
 SCHEMA = "of the schema, which is tried below"
 SIZES = (16, 24, 32, 48, 64, 96, 128, 250, 1000)
 """So near one another that one that doubles with each character is found out before it takes a day."""
-EXPRESSIONS = list_expressions()
 PARTS = 40
 
 MADE = {
     "archgen/compare/losses/parted_ends.py:_find_mentions": "a name between bounds of words",
     "archgen/derivation/parameter_names.py:_list_bindings": "of the shipped library's files, no input",
     "archgen/emit/term_mentions.py:_compile_terms": "names between bounds of words",
-    "archgen/emit/workspace/workspace_plan.py:_holds_phrase": "a name between bounds of words",
+    "archgen/emit/workspace/own_code.py:_find_changed_messages": "a name, and another one at most 1,000 characters behind it",
+    "archgen/emit/workspace/own_code.py:_find_lost_fields_in_words": "names of messages and of what is declared with them, taken for good",
+    "archgen/emit/workspace/own_code.py:_find_lost_parameters": "names between bounds of words",
+    "archgen/emit/workspace/own_code.py:_holds_phrase": "a name between bounds of words",
     "archgen/link/report_chapters.py:_locate_picture": "a path behind one sign",
     "archgen/plugins/ros/workspace/node_components.py:_leave_out_filed": "names of parameters, with what stands for one in them",
     "archgen/plugins/tables/table_files.py:_add_rows": "one set of characters, taken for good",
@@ -81,7 +83,7 @@ def time_of(pattern: re.Pattern[Any], method: str, text: str) -> float:
 @pytest.mark.slow
 @pytest.mark.parametrize("part", range(PARTS))
 def test_expressions_are_linear(part: int) -> None:
-    slow = {expression.place: find_slow_text(expression) for expression in EXPRESSIONS[part::PARTS]}
+    slow = {expression.place: find_slow_text(expression) for expression in list_expressions()[part::PARTS]}
     assert not {place: text for place, text in slow.items() if text}
 
 
@@ -106,7 +108,7 @@ def test_expressions_of_the_schemas_are_linear() -> None:
 
 
 def test_the_package_is_walked() -> None:
-    places = {expression.place for expression in EXPRESSIONS}
+    places = {expression.place for expression in list_expressions()}
     assert len(places) > 400
     assert "archgen/syntax/yaml_comments.py:_CONFLICT_MARKER" in places  # a name
     assert any(
@@ -131,7 +133,9 @@ def test_what_functions_make_is_known() -> None:
     ],
 )
 def test_slow_ones_are_found(pattern: str, method: str) -> None:
-    assert find_slow_text(Expression("here", re.compile(pattern), (method,)), 20_000)
+    expression = Expression("here", re.compile(pattern), (method,))
+    # Most show at the first length, in a tenth of the time; a quick machine needs the second.
+    assert any(find_slow_text(expression, length) for length in (2 * LENGTH, 5 * LENGTH))
 
 
 @pytest.mark.parametrize(

@@ -83,9 +83,9 @@ def test_a_change_is_said_and_own_code_stays(rover: Path) -> None:
     text = re.sub(r"^ +outputs: \{distance.*$", outputs, text, flags=re.MULTILINE)
     text = re.sub(r"^ +inputs: \{distance.*$", inputs, text, flags=re.MULTILINE)
     (rover / "archgen.yaml").write_text(text.replace("types:\n", f"types:\n{charge}\n"), encoding="utf-8")
-    done = archgen_here(*COMMANDS[3].split(), cwd=rover)
-    (warning,) = re.findall(r"^warning: .*$", PAGE, re.MULTILINE)
-    assert warning in done.stderr.decode()
+    done = archgen_here(*COMMANDS[3].split(), cwd=rover, status=1)
+    (error,) = re.findall(r"^error: .*$", PAGE, re.MULTILINE)
+    assert error in done.stderr.decode()
     own = "ws/src/rover_drive/rover_drive/explorer.py"
     assert (rover / own).read_text() == FILES[own]
     assert "publish_battery" in (rover / "ws/src/rover_drive/rover_drive/body_node.py").read_text()

@@ -31,7 +31,7 @@ def expected_rules() -> frozenset[str]:
     return frozenset(rule for folder in folders for case in read_cases(folder) for rule in case.expected_rules)
 
 
-RULES_OF_REPOSITORIES = frozenset({"expired-use", "stale-codeowners"})
+RULES_OF_REPOSITORIES = frozenset({"expired-use", "missed-milestone", "stale-codeowners"})
 """Rules that need a repository, which a case has not: tests/project/test_commit_days.py, tests/checking/test_codeowners_age.py."""
 
 

@@ -268,6 +268,7 @@ def test_what_shows_no_order_is_let_pass(line: str) -> None:
     assert walks_over_sets(line) == []
 
 
+@pytest.mark.slow
 def test_no_set_is_walked_over_in_its_own_order() -> None:
     names = {file.relative_to(ROOT).as_posix(): file for file in FILES}
     walks = [

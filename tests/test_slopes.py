@@ -39,7 +39,17 @@ _VERBS: dict[str, tuple[str, ...]] = {
     "transform": ("transform", "flatten", "-C", "{project}", "-o", "{out}/flat.yaml"),
     "reqif": ("export", "reqif", "-C", "{project}", "-o", "{out}/all.reqif"),
     "csv": ("build", "{project}", "--only", "csv", "-o", "{out}/all"),
+    "find": ("find", "-C", "{project}", "Component"),
+    "todo": ("todo", "{project}", "--partner", "p0"),
+    "impact": ("impact", "{project}", "--partner", "p0"),
+    "fmt": ("fmt", "--diff", "{project}"),
+    "launch": ("generate", "ros2_launch", "-C", "{project}", "-o", "{out}/launch"),
+    "rename": ("rename", "g0.c0", "fresh", "--dry-run", "-C", "{project}"),
+    "move": ("move", "g0.c0", "--file", "moved.yaml", "--dry-run", "-C", "{project}"),
 }
+_PLAIN_VERBS = frozenset({"pack", "list", "schema", "start", "owners", "find", "fmt"})
+"""What does nothing of its own with chains and variants: a check is all of it."""
+_INSTANCES_VERBS = {"rename in a type": ("rename", "filter.clean", "tidy", "--dry-run", "-C", "{project}")}
 _Calls = dict[tuple[str, int, str], int]
 
 
@@ -91,7 +101,10 @@ def make_projects(dimension: str, folder: Path) -> list[Path]:
 def test_no_verb_calls_anything_more_than_n_log_n_times(dimension: str, tmp_path: Path) -> None:
     projects = make_projects(dimension, tmp_path)
     steep = []
-    for verb, words in _VERBS.items():
+    verbs = _VERBS | (_INSTANCES_VERBS if dimension == "instances" else {})
+    if dimension in {"chains", "variants"}:
+        verbs = {verb: words for verb, words in verbs.items() if verb not in _PLAIN_VERBS}
+    for verb, words in verbs.items():
         count_calls(_fill_in(words, projects[0]))  # what is imported or made once is not counted
         steep += [f"{verb}: {each}" for each in find_steep([count_calls(_fill_in(words, each)) for each in projects])]
     assert not steep, "\n".join(steep)

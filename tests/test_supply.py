@@ -11,8 +11,8 @@ import yaml
 
 from tests.running import ROOT
 
-WORKFLOWS = (".github/workflows/ci.yml", ".github/workflows/action.yml", ".github/workflows/supply.yml")
-LOCKS = ("run.txt", "check.txt", "supply.txt", "fuzz.txt")
+WORKFLOWS = tuple(f".github/workflows/{name}.yml" for name in ("ci", "action", "supply", "release", "pages"))
+LOCKS = ("run.txt", "check.txt", "supply.txt", "fuzz.txt", "docs.txt")
 
 
 def read_lock(name: str) -> dict[str, tuple[str, list[str]]]:
@@ -44,12 +44,18 @@ def satisfies(version: str, words: str) -> bool:
 
 @pytest.mark.parametrize(
     ("lock", "groups"),
-    [("run.txt", ["build"]), ("check.txt", ["build", "check"]), ("supply.txt", ["supply"]), ("fuzz.txt", ["fuzz"])],
+    [
+        ("run.txt", ["build"]),
+        ("check.txt", ["build", "check"]),
+        ("supply.txt", ["supply"]),
+        ("fuzz.txt", ["fuzz"]),
+        ("docs.txt", ["docs"]),
+    ],
 )
 def test_locked_is_what_is_asked_for(lock: str, groups: list[str]) -> None:
     locked = read_lock(lock)
     wanted = [words for group in groups for words in list_wanted(group)]
-    if lock not in {"supply.txt", "fuzz.txt"}:
+    if lock not in {"supply.txt", "fuzz.txt", "docs.txt"}:
         data = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))
         wanted += data["project"]["dependencies"]
     for words in wanted:

@@ -82,6 +82,7 @@ def test_the_wheel_holds_what_archgen_needs_and_nothing_else(built: Path) -> Non
     about = {name.partition("/")[2] for name in held if name.startswith(f"{NAME}.dist-info/")}
     licences = {
         "LICENSE",
+        "archgen/emit/docx/fonts/LICENSE.DejaVu",
         "archgen/emit/fonts/LICENSE.DejaVu",
         "archgen/emit/fonts/LICENSE.Inter",
         "backends/site/assets/fonts/LICENSE-Inter.txt",
@@ -139,6 +140,7 @@ def test_two_builds_make_the_same_bytes(tmp_path: Path) -> None:
         "_data/example_ramcip/archgen.yaml",
         "emit/fonts/DejaVuSans.ttf",
         "emit/fonts/LICENSE.DejaVu",
+        "emit/docx/fonts/DejaVuSansMono.ttf",
         "_data/backends/site/assets/fonts/LICENSE-Inter.txt",
         "_data/backends/site/assets/search/LICENSE-uFuzzy.txt",
         "_data/backends/site/assets/search/ufuzzy.js",

@@ -25,6 +25,8 @@ FILES = (
     ".github/workflows/ci.yml",
     ".github/workflows/action.yml",
     ".github/workflows/supply.yml",
+    ".github/workflows/release.yml",
+    ".github/workflows/pages.yml",
 )
 ROBOT = """\
 archgen: 1
@@ -161,7 +163,7 @@ def run_hook(hook: dict[str, Any], folder: Path, runner: Path) -> subprocess.Com
 
 
 def test_the_hook_of_pre_commit_shows_only_what_stops_the_commit(tmp_path: Path, runner: Path) -> None:
-    hook, _ = yaml.safe_load((ROOT / ".pre-commit-hooks.yaml").read_text(encoding="utf-8"))
+    hook, *_ = yaml.safe_load((ROOT / ".pre-commit-hooks.yaml").read_text(encoding="utf-8"))
     assert (hook["language"], hook["stages"], hook["pass_filenames"]) == ("python", ["pre-commit"], False)
     assert re.search(hook["files"], "groups/sensing.yaml")
     assert not re.search(hook["files"], "firmware/main.c")
@@ -179,8 +181,16 @@ def test_the_hook_of_pre_commit_shows_only_what_stops_the_commit(tmp_path: Path,
     assert (done.returncode, done.stdout, done.stderr) == (0, "", "")
 
 
+def test_the_hook_for_one_style_lays_the_files_out(tmp_path: Path, runner: Path) -> None:
+    _, hook, _ = yaml.safe_load((ROOT / ".pre-commit-hooks.yaml").read_text(encoding="utf-8"))
+    folder = repositories.repository(tmp_path / "work", {"archgen.yaml": "archgen: 1\ngroups:\n    a: {title: A}\n"})
+    assert (run_hook(hook, folder, runner).returncode, hook["pass_filenames"]) == (0, False)
+    assert (folder / "archgen.yaml").read_text() == "archgen: 1\ngroups:\n  a: {title: A}\n"
+
+
+@pytest.mark.slow
 def test_the_hook_before_a_push_holds_it_against_the_main_line_of_the_remote(tmp_path: Path, runner: Path) -> None:
-    _, hook = yaml.safe_load((ROOT / ".pre-commit-hooks.yaml").read_text(encoding="utf-8"))
+    *_, hook = yaml.safe_load((ROOT / ".pre-commit-hooks.yaml").read_text(encoding="utf-8"))
     assert (hook["stages"], hook["always_run"], hook["pass_filenames"]) == (["pre-push"], True, False)
     strict = f"{ROBOT}review: {{breaking: error}}\n"
     folder = repositories.repository(tmp_path / "work", {"README.md": "x\n"})

@@ -35,6 +35,7 @@ CAPABILITIES: Mapping[str, tuple[str, ...]] = {
     "passes and rules of one's own": ("passes",),
     "pictures": ("views/graphs", "views/sequences", "emit/graphviz", "emit/fonts"),
     "site, explorer, search, preview": ("emit/site", "views/explorer", "views/search", "serve"),
+    "editors": ("live", "lsp"),
     "Word and PDF report": ("emit/docx", "views/report"),
     "views that all outputs share": ("views",),
     "data, terminal, other formats": ("emit",),

@@ -1,4 +1,4 @@
-"""Count what each generator consists of: its templates, and the Python that makes its views. docs/generation.md shows it."""
+"""Count what each generator consists of: its templates, and the Python that makes its views. docs/quality.md shows it."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from archgen.installed_plugins import list_shipped_facts
 from archgen.views.generation import CORE_VIEWS, find_view_maker
 
 ROOT = Path(__file__).resolve().parent.parent
-PAGE = ROOT / "docs" / "generation.md"
+PAGE = ROOT / "docs" / "quality.md"
 HEADING = "## How large the generators are"
 _VIEWS = ROOT / "archgen" / "views" / "generation"
 _OFFERED = "archgen.plugin."

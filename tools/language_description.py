@@ -7,7 +7,7 @@ may have. Nothing here decides anything about single kinds or keys: what a part 
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cached_property
 from pathlib import Path
 from typing import Any
@@ -87,6 +87,8 @@ class Description:
     types: Mapping[str, Part]
     kinds: Mapping[str, Part]
     """As written: `keys_of` completes the keys."""
+    other_words: Mapping[str, Mapping[str, str]] = field(default_factory=dict)
+    """What people call the keys of a kind elsewhere: the key by such a word."""
 
     @cached_property
     def parts(self) -> Mapping[str, Part]:
@@ -148,13 +150,24 @@ def load_description(folder: Path = FOLDER) -> Description:
     types = read_description_file(folder / "types.yaml")
     for kind, part in kinds.items():
         _add_section(kind, part, kinds["slice"], types)
-    description = Description(read_description_file(folder / "common.yaml"), types, kinds)
+    other_words = _read_other_words(folder / "other_words.yaml")
+    description = Description(read_description_file(folder / "common.yaml"), types, kinds, other_words)
     for part in description.types.values():
         _list_named_kinds(part, description)
     if twice := description.types.keys() & kinds.keys():
         message = f"a kind and a type at once: {', '.join(sorted(twice))}"
         raise DescriptionError(message)
     return description
+
+
+def _read_other_words(path: Path) -> dict[str, dict[str, str]]:
+    words = read_description_file(path) if path.is_file() else {}
+    pairs = {kind: [(word, key) for key, text in keys.items() for word in text.split()] for kind, keys in words.items()}
+    for kind, keys_by_word in pairs.items():
+        if len(dict(keys_by_word)) < len(keys_by_word):
+            message = f"{path.name}: {kind}: a word stands at two keys"
+            raise DescriptionError(message)
+    return {kind: dict(keys_by_word) for kind, keys_by_word in pairs.items()}
 
 
 def _add_section(kind: str, part: Part, slice_part: Part, types: dict[str, Part]) -> None:
@@ -308,6 +321,7 @@ def _describe_option(option: RuleOption) -> Part:
 
 def find_faults(description: Description) -> Iterator[str]:
     """Yield what is wrong with a description, a sentence each: nothing is left to a guess of who reads it."""
+    yield from _find_faults_of_words(description)
     for name, part in description.common.items():
         yield from _find_part_faults(f"common.{name}", part, description)
     for name, part in description.types.items():
@@ -325,6 +339,16 @@ def find_faults(description: Description) -> Iterator[str]:
             yield from _find_field_faults(f"{kind}.{name}", key)
             if part.get("supporting") and "declares" not in key:
                 yield f"{kind}.{name}: `declares` says whether a file that says only this declares a {kind}"
+
+
+def _find_faults_of_words(description: Description) -> Iterator[str]:
+    for kind, keys_by_word in description.other_words.items():
+        keys = description.keys_of(kind) if kind in description.kinds else {}
+        for word, key in keys_by_word.items():
+            if key not in keys:
+                yield f"other_words.yaml: there is no key `{kind}.{key}`"
+            elif word in keys:
+                yield f"other_words.yaml: `{word}` is a key of {kind} itself"
 
 
 def _find_field_faults(place: str, key: Part) -> Iterator[str]:

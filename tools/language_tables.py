@@ -143,6 +143,7 @@ def make_tables(description: Description) -> str:
                 description.kinds_with("properties"),
                 "Kinds of elements that may have properties and hints.",
             ),
+            format_table("OTHER_WORDS", description.other_words, "What people call the keys of a kind elsewhere."),
             format_table("SUPPORTING_KEYS", supporting, "Keys that say something of an element that others declare."),
         ]
     )

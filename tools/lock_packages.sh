@@ -1,7 +1,7 @@
 #!/bin/sh
 # Writes the packages that are installed where it counts, each with its version and the hashes of its files: ci/locked/.
 # run.txt is what archgen needs and what builds it, check.txt also what tests and checks it, supply.txt what looks at these two,
-# fuzz.txt what finds its way through the readers.
+# fuzz.txt what finds its way through the readers, docs.txt what makes a site of the manual.
 set -eu
 cd "$(dirname "$0")/.."
 lock=.make/lock
@@ -13,6 +13,7 @@ compile() {
         --no-emit-index-url --quiet --output-file "ci/locked/$out"
 }
 compile run.txt pyproject.toml --group build
-compile check.txt pyproject.toml --extra xlsx --extra sources --group build --group check
+compile check.txt pyproject.toml --extra xlsx --extra slides --extra sources --group build --group check
 compile supply.txt --group supply
 compile fuzz.txt --group fuzz
+compile docs.txt --group docs

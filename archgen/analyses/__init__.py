@@ -92,6 +92,8 @@ _TIMING_RULE_FUNCTIONS: tuple[RuleEntry, ...] = (
 
 RULES: tuple[Rule, ...] = tuple(Rule.from_function(*entry) for entry in (*_RULE_FUNCTIONS, *_TIMING_RULE_FUNCTIONS))
 """All rules that judge an architecture, in the order in which they run."""
+TIMING_RULE_NAMES = frozenset(entry[0].__name__.replace("_", "-") for entry in _TIMING_RULE_FUNCTIONS)
+"""The rules that judge the timing analysis."""
 
 
 MAX_LOOKED_FOR = 20_000
@@ -109,18 +111,19 @@ def check_architecture(
     architecture: Architecture,
     analysis: Analysis | None,
     rule_options: Mapping[str, OptionValues] = MappingProxyType({}),
+    waiting_rules: frozenset[str] = frozenset(),
 ) -> Iterator[Diagnostic]:
-    """Run all rules and yield their raw diagnostics, neither sorted nor settled.
+    """Run all rules but those that wait, and yield their raw diagnostics, neither sorted nor settled.
 
     `analysis` is the timing analysis, `rule_options` are the options that the project sets, by rule.
     """
     for entry in _RULE_FUNCTIONS:
-        yield from bound_findings(entry[0](architecture, **_option_arguments(entry, rule_options)))
-    if analysis is not None:
-        for timing_entry in _TIMING_RULE_FUNCTIONS:
-            yield from bound_findings(
-                timing_entry[0](architecture, analysis, **_option_arguments(timing_entry, rule_options))
-            )
+        if _name_rule(entry) not in waiting_rules:
+            yield from bound_findings(entry[0](architecture, **_option_arguments(entry, rule_options)))
+    for entry in _TIMING_RULE_FUNCTIONS if analysis is not None else ():
+        # A chain that a slip has torn apart is searched for late runs for seconds.
+        if _name_rule(entry) not in waiting_rules:
+            yield from bound_findings(entry[0](architecture, analysis, **_option_arguments(entry, rule_options)))
 
 
 def bound_findings(findings: Iterable[Diagnostic]) -> Iterator[Diagnostic]:
@@ -139,8 +142,11 @@ def _option_arguments(entry: RuleEntry, rule_options: Mapping[str, OptionValues]
     # Most rules have none.
     if len(entry) < 3:  # noqa: PLR2004 - function, severity, options
         return {}
-    function, _, options = entry
-    return read_option_values(options, rule_options.get(function.__name__.replace("_", "-"), {}))
+    return read_option_values(entry[2], rule_options.get(_name_rule(entry), {}))
+
+
+def _name_rule(entry: RuleEntry) -> str:
+    return entry[0].__name__.replace("_", "-")
 
 
 def _has_timing(architecture: Architecture) -> bool:

@@ -15,7 +15,7 @@ from archgen.model.architecture import Architecture
 from archgen.model.component import Component, PerformanceIndicator
 from archgen.model.deployment import Host
 from archgen.timing.analysis import Analysis, ChainTerm, LateRun, ServiceLoad
-from archgen.timing.chains.chain_bounds import LateChain, find_missed_shares, find_unmet_chains
+from archgen.timing.chains.chain_bounds import JudgedChain, find_missed_shares, find_open_chains, find_unmet_chains
 from archgen.timing.chains.read_ages import ReadAge, find_read_ages
 from archgen.timing.chains.use_case_times import WholeBound, WholeLimit, bound_wholes, list_limits
 from archgen.timing.figures import figure_wording
@@ -257,7 +257,7 @@ def late_chain(architecture: Architecture, analysis: Analysis, *, margin: Fracti
 
 
 def _find_late_runs(
-    architecture: Architecture, analysis: Analysis, unmet_chains: Sequence[LateChain]
+    architecture: Architecture, analysis: Analysis, unmet_chains: Sequence[JudgedChain]
 ) -> Mapping[str, LateRun]:
     """Return the runs that show chains late that bounds alone do not prove to be, by chain."""
     if all(each.verdict == "missed" for each in unmet_chains):
@@ -272,7 +272,7 @@ def _describe_run(chain_id: str, run: LateRun) -> str:
     return f"it took {format_duration(run.longest)} in a simulated run (`{run.write_command(chain_id)}`)"
 
 
-def _describe_bound(analysis: Analysis, late_chain: LateChain) -> str:
+def _describe_bound(analysis: Analysis, late_chain: JudgedChain) -> str:
     """Describe how long a chain takes, or why nobody can say."""
     from archgen.timing.chains.unfound_bounds import find_overloaded_hosts, find_unfound_places
 
@@ -292,7 +292,7 @@ def _describe_bound(analysis: Analysis, late_chain: LateChain) -> str:
     return f"it may take {figure_wording.format_duration(bound.value)}{suffix}"
 
 
-def _label_largest_part(architecture: Architecture, analysis: Analysis, late_chain: LateChain) -> Label:
+def _label_largest_part(architecture: Architecture, analysis: Analysis, late_chain: JudgedChain) -> Label:
     """Return a label at what takes the largest part of a chain's time.
 
     Where a host has too much to do, or leaves no bound to find, the label is at the host: the figures of the elements
@@ -336,6 +336,24 @@ def _format_term(term: ChainTerm) -> str:
         if value.value != 0
     ]
     return ", ".join(phrases) or "no time"
+
+
+def open_chain(architecture: Architecture, analysis: Analysis) -> Iterator[Diagnostic]:
+    """Nobody can say whether a chain meets its deadline: figures are missing."""
+    from archgen.timing.chains.missing_figures import list_missing_figures
+
+    if all(chain.deadline is None for chain in architecture.chains.values()):
+        return
+    for result in find_open_chains(analysis, architecture):
+        chain = result.chain
+        gaps = "; ".join(list_missing_figures(result, analysis)) or "no bound was found"
+        yield Diagnostic(
+            "open-chain",
+            f"nobody can say whether the chain `{chain.id}` meets its deadline of {chain.deadline}: {gaps}",
+            chain.at,
+            help=f"write what is missing, if only a guess; `archgen timing --chain {chain.id}` shows what is known",
+            element=chain.id,
+        )
 
 
 def stale_input(_: Architecture, analysis: Analysis) -> Iterator[Diagnostic]:
@@ -383,5 +401,6 @@ RULES = (
         Severity.WARNING,
         (RuleOption("margin", 0, 0, 99, "The share of the deadline that must stay free."),),
     ),
+    (open_chain, Severity.NOTE),
     (stale_input, Severity.WARNING),
 )

@@ -211,6 +211,24 @@ def mixed_source(architecture: Architecture) -> Iterator[Diagnostic]:
             )
 
 
+def own_source(architecture: Architecture) -> Iterator[Diagnostic]:
+    """A component reads its own output."""
+    for connection in architecture.connections:
+        port = architecture.inputs[connection.input]
+        # Who takes all of a group, himself among it, means the others; what a type hands out is written by nobody.
+        if connection.kind == "group" or connection.is_made:
+            continue
+        feeders = {architecture.outputs[output].component for output in connection.outputs} or {connection.target}
+        if feeders == {port.component}:
+            yield Diagnostic(
+                "own-source",
+                f"`{port.name}` of `{port.component}` comes from `{connection.target}`, which is its own",
+                connection.at,
+                help="name the component whose output is meant; where the node does hear itself, allow it with the reason",
+                element=port.component,
+            )
+
+
 RULES = (
     (disconnected_component, Severity.WARNING),
     (unfed_input, Severity.WARNING),
@@ -218,4 +236,5 @@ RULES = (
     (unread_output, Severity.WARNING),
     (repeated_source, Severity.WARNING),
     (mixed_source, Severity.WARNING),
+    (own_source, Severity.WARNING),
 )

@@ -11,6 +11,7 @@ from archgen.diagnostics.diagnostic import Diagnostic, Label, Severity
 from archgen.diagnostics.source_span import NO_SPAN
 from archgen.model.architecture import Architecture
 from archgen.model.node import Node, Topic
+from archgen.model.port_media import ROS
 from archgen.model.ros_distro import is_ros_1
 
 _KEY_MEANINGS = {"plugin": "the class in `plugin`", "container": "the container that loads it in `container`"}
@@ -57,7 +58,11 @@ def _list_missing_keys(node: Node) -> list[str]:
     if "composable" not in node.kinds or node.status == "planned" or node.executable:
         return []
     # A container that is written, but not declared, is reported by the linker.
-    missing_keys = {"plugin": node.plugin is None, "container": node.container_at == NO_SPAN}
+    # Without a package its code is generated, and so is the name of its class.
+    missing_keys = {
+        "plugin": node.plugin is None and node.package is not None,
+        "container": node.container_at == NO_SPAN,
+    }
     return [key for key, is_missing in missing_keys.items() if is_missing]
 
 
@@ -65,6 +70,17 @@ def uncomposable_node(architecture: Architecture) -> Iterator[Diagnostic]:
     """A node stands in a container that loads composable nodes, and is none itself."""
     loaded_nodes = {node.container: node for node in architecture.nodes.values() if _is_loadable(node)}
     for node in architecture.nodes.values():
+        container = architecture.containers.get(node.container or "")
+        if node.language == "python" and container and not container.package and architecture.project.middleware == ROS:
+            yield Diagnostic(
+                "uncomposable-node",
+                f"`{node.id}` is written in Python, but its container `{container.id}` loads classes of C++ only",
+                node.at,
+                labels=(Label(container.at, "the container"),),
+                help="leave `container` out: programs in Python run in processes of their own",
+                element=node.id,
+            )
+            continue
         loaded_node = loaded_nodes.get(node.container) if node.container else None
         if loaded_node is not None and not _is_loadable(node) and not node.plugin and node.status != "planned":
             kind = "nodelet" if "nodelet" in loaded_node.kinds else "composable"

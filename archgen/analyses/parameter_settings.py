@@ -160,7 +160,9 @@ def _judge_value(parameter: Parameter, value: object, span: Span, element: str) 
 def unset_parameter(architecture: Architecture) -> Iterator[Diagnostic]:
     """A parameter has no value: neither its component nor a node gives it one."""
     for node in architecture.nodes.values():
-        if node.unread_files or not any(map(_needs_value, find_declarations(architecture, node).values())):
+        # A program that exists may take from its command line what it wants, as robot_state_publisher does.
+        is_told_otherwise = node.unread_files or (node.status == "existing" and node.arguments)
+        if is_told_otherwise or not any(map(_needs_value, find_declarations(architecture, node).values())):
             continue
         unset_names = [
             name

@@ -1,9 +1,10 @@
-"""Does data flow where the project forbids it, and do the selectors of views and policies select something?"""
+"""Does data flow where the project forbids it, are milestones kept, and do selectors select something?"""
 
 from __future__ import annotations
 
 from collections.abc import Collection, Iterator
 
+from archgen.diagnostics.common_wording import join_first
 from archgen.diagnostics.diagnostic import Diagnostic, Label, Severity
 from archgen.diagnostics.source_span import Span
 from archgen.frozen import NamedTuple
@@ -14,7 +15,7 @@ from archgen.model.selector_parser import SelectorProblem
 
 
 class WrittenSelector(NamedTuple):
-    """A selector written in the project: its view or policy (as a phrase, and by id), its text and its span."""
+    """A selector written in the project: its view, milestone or policy (as a phrase, and by id), its text and its span."""
 
     owner_phrase: str
     element: str
@@ -35,10 +36,13 @@ def _share_evaluator(architecture: Architecture) -> SelectorEvaluator:
 
 
 def _list_written_selectors(architecture: Architecture) -> Iterator[WrittenSelector]:
-    """Yield all selectors of views and policies, except empty ones."""
+    """Yield all selectors of views, milestones and policies, except empty ones."""
     for view in architecture.views.values():
         if view.show:
             yield WrittenSelector(f"the view `{view.id}`", view.id, view.show, view.show_at)
+    for milestone in architecture.milestones.values():
+        if milestone.needs:
+            yield WrittenSelector(f"the milestone `{milestone.id}`", milestone.id, milestone.needs, milestone.needs_at)
     for policy in architecture.policies.values():
         selectors = [(policy.forbid_from, policy.from_at), (policy.forbid_to, policy.to_at)]
         if policy.require:
@@ -52,7 +56,7 @@ def _list_written_selectors(architecture: Architecture) -> Iterator[WrittenSelec
 
 
 def wrong_selector(architecture: Architecture) -> Iterator[Diagnostic]:
-    """A selector in a view or policy cannot be read, or names what is not there."""
+    """A selector in a view, milestone or policy cannot be read, or names what is not there."""
     evaluator = _share_evaluator(architecture)
     for written_selector in _list_written_selectors(architecture):
         for problem in evaluator.evaluate(written_selector.text)[1]:
@@ -84,6 +88,31 @@ def empty_view(architecture: Architecture) -> Iterator[Diagnostic]:
                 view.show_at,
                 help="see what a selector selects with `archgen list SELECTOR`",
                 element=view.id,
+            )
+
+
+def missed_milestone(architecture: Architecture) -> Iterator[Diagnostic]:
+    """The day of a milestone is over, and nodes that it needs are still planned."""
+    day = architecture.commit_day
+    for milestone in architecture.milestones.values():
+        if day is None or milestone.date is None or not milestone.needs or milestone.date >= day:
+            continue
+        selection, _ = _share_evaluator(architecture).evaluate(milestone.needs)
+        planned = [
+            node
+            for node in architecture.nodes.values()
+            if node.status == "planned"
+            and (node.id in selection.nodes or not selection.components.isdisjoint(node.implements))
+        ]
+        if planned:
+            names = join_first([f"`{node.id}`" for node in planned])
+            verb = "is" if len(planned) == 1 else "are"
+            yield Diagnostic(
+                "missed-milestone",
+                f"the milestone `{milestone.id}` was on {milestone.date}, and {names} {verb} still planned: the newest commit is of {day}",
+                milestone.at,
+                help="say what is there by now (`status: existing` at the node), or move the day",
+                element=milestone.id,
             )
 
 
@@ -267,4 +296,5 @@ RULES = (
     (unneeded_exception, Severity.NOTE),
     (wrong_selector, Severity.ERROR),
     (empty_view, Severity.WARNING),
+    (missed_milestone, Severity.WARNING),
 )

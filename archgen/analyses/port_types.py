@@ -13,6 +13,7 @@ from archgen.model.component import Connection, Input, Output
 from archgen.model.message_types import flow_of, full_message_name
 from archgen.model.node import Node
 from archgen.model.port_media import MEDIUM_NAMES, MEMORY, is_physical, name_medium, uses_ros
+from archgen.model.ros_distro import can_name_peers
 
 
 def is_expected_type(architecture: Architecture, expected_type: str, output: Output) -> bool:
@@ -220,7 +221,22 @@ def _find_places(architecture: Architecture) -> Mapping[str, Mapping[Span, str]]
 
 
 def unused_ros_setting(architecture: Architecture) -> Iterator[Diagnostic]:
-    """Something is written that only ROS has, at a port or a program that is no ROS."""
+    """Something is written that only ROS has, at a port or a program that is no ROS; or that its distribution has not."""
+    if architecture.ros_discovery == "peers" and not can_name_peers(architecture.distro):
+        yield Diagnostic(
+            "unused-ros-setting",
+            f"`discovery: peers` has no effect: {architecture.distro} reads no addresses of peers from the environment, ROS 2 does since Iron",
+            architecture.distro_at,
+            help="leave it out, and give the nodes a profile of their DDS by `ros: {environment: ...}`",
+        )
+    middleware = next((each for each in architecture.ros_environment if each.name == "RMW_IMPLEMENTATION"), None)
+    if architecture.ros_discovery == "peers" and middleware and str(middleware.value).startswith("rmw_zenoh"):
+        yield Diagnostic(
+            "unused-ros-setting",
+            "`discovery: peers` has no effect: Zenoh reads no addresses of peers from ROS's variables",
+            middleware.at,
+            help="leave it out, and let the hosts' routers connect: `ZENOH_ROUTER_CONFIG_URI` in `environment` names a file that says to whom",
+        )
     for node in architecture.nodes.values():
         for key, place, reason in (*_list_port_settings(architecture, node), *_list_program_settings(node)):
             yield Diagnostic(

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections import defaultdict
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from fractions import Fraction
 from functools import cache
 from itertools import product
@@ -55,18 +55,24 @@ class _KnownNames:
                 self.by_alias.setdefault((alias, use), name)
 
 
+def _index_names(architecture: Architecture) -> Mapping[str, _KnownNames]:
+    known_names: dict[str, _KnownNames] = {node: _KnownNames() for node in architecture.nodes}
+    for endpoint in architecture.endpoints:
+        if endpoint.flow == "topic":
+            known_names[endpoint.node].add(endpoint)
+    return known_names
+
+
 def ineffective_override(architecture: Architecture) -> Iterator[Diagnostic]:
     """A parameter that is to override the quality of service does nothing, or ends the node as it starts."""
     if is_ros_1(architecture.distro):
         return
-    known_names: dict[str, _KnownNames] = defaultdict(_KnownNames)
-    for endpoint in architecture.endpoints:
-        if endpoint.flow == "topic":
-            known_names[endpoint.node].add(endpoint)
+    known_names: Mapping[str, _KnownNames] = {}
     seen_places = set[Span]()
     compared_count = 0
     for node in architecture.nodes.values():
         for override in list_overrides(architecture, node) if not node.is_program else ():
+            known_names = known_names or _index_names(architecture)
             names = known_names[node.id]
             fault = _find_bad_word(override) or _find_other_name(override, names)
             # What stands in a file, or holds for all nodes, may be meant for another one.

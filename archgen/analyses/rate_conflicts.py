@@ -157,7 +157,7 @@ def _report_overflow(edge: EdgeFit, target: Activity, depths: tuple[int, Fractio
     )
 
 
-def endless_trigger(_: Architecture, analysis: Analysis) -> Iterator[Diagnostic]:
+def endless_trigger(architecture: Architecture, analysis: Analysis) -> Iterator[Diagnostic]:
     """Elements fire one another in a ring: an event that enters it circulates for ever."""
     for ring in analysis.endless:
         members = [analysis.system.activities[name] for name in ring]
@@ -165,14 +165,18 @@ def endless_trigger(_: Architecture, analysis: Analysis) -> Iterator[Diagnostic]
         # placed at a member whose behaviour is written, if there is one.
         inferred_members = [activity for activity in members if activity.behaviour_inferred]
         first = next((activity for activity in members if not activity.behaviour_inferred), members[0])
-        is_certain = not inferred_members
+        # Programs that exist run as they run: of none of them has anybody said how.
+        is_guess = all(
+            each.behaviour_inferred and architecture.nodes[each.node].status == "existing" for each in members
+        )
+        guess = Severity.NOTE if is_guess else Severity.WARNING
         yield Diagnostic(
             "endless-trigger",
             f"{_join_quoted(ring)} fire one another without an end"
             if len(ring) > 1
             else f"`{ring[0]}` fires itself without an end",
             first.places.get("trigger", first.at),
-            severity=None if is_certain else Severity.WARNING,
+            severity=guess if inferred_members else None,
             labels=tuple(
                 Label(member.at, "in the ring") for member in members if member is not first and member.at != NO_SPAN
             ),

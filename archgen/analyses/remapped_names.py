@@ -149,23 +149,28 @@ def _is_shield(rule: RemapRule, names: NodeNames) -> bool:
 
 def unused_remap(architecture: Architecture) -> Iterator[Diagnostic]:
     """A rule for names fits nothing that its node uses."""
-    ros_1 = is_ros_1(architecture.distro)
     ruled = _RuledNodes(architecture)
+    told = {node_id: _list_told_names(architecture, ruled.endpoints[node_id]) for node_id in ruled.names}
+    fitting = {
+        rule.text
+        for node_id, names in ruled.names.items()
+        for rule in names.rules
+        if names.expand(rule.own_name) in told[node_id]
+    }
     for node_id, names in ruled.names.items():
         endpoints, node = ruled.endpoints[node_id], architecture.nodes[node_id]
         if not _has_known_ends(architecture, node, endpoints):
             continue
-        own_names = [each.program_name for each in endpoints if each.program_name]
-        parts = ACTION_PARTS[1 if ros_1 else 2]
-        own_names += [f"{each.program_name}{part}" for each in endpoints if each.flow == "action" for part in parts]
+        own_names = told[node_id]
         wire_names = {each.name for each in endpoints}
         for rule in names.rules:
             own_name, name = names.expand(rule.own_name), names.expand(rule.name or "")
             if own_name is None or own_name in own_names or name in wire_names or _is_of_ros(own_name, name):
                 continue
-            guess = find_closest(own_name, own_names)
-            # Of a program that exists the ports may be some of many: there only what looks like one of them is told.
-            if guess is None and node.status in {"existing", "adapted"}:
+            guess = _find_meant(own_name, own_names, node)
+            # Of a program that exists the ports may be some of many: there only what looks like one of them is told. What a
+            # group of a launch file gives to all of its nodes is meant for the one that it fits.
+            if (guess is None or rule.text in fitting) and node.status in {"existing", "adapted"}:
                 continue
             yield Diagnostic(
                 "unused-remap",
@@ -174,6 +179,18 @@ def unused_remap(architecture: Architecture) -> Iterator[Diagnostic]:
                 help=f"did you mean `{guess}`?" if guess else f"it uses {_list_some(own_names)}",
                 element=node_id,
             )
+
+
+def _list_told_names(architecture: Architecture, endpoints: list[Endpoint]) -> list[str]:
+    """Return what a program calls the ends of its node, before rules for names."""
+    own_names = [each.program_name for each in endpoints if each.program_name]
+    parts = ACTION_PARTS[1 if is_ros_1(architecture.distro) else 2]
+    return own_names + [
+        f"{each.program_name}{part}"
+        for each in endpoints
+        if each.flow == "action" and each.program_name
+        for part in parts
+    ]
 
 
 def _has_known_ends(architecture: Architecture, node: Node, endpoints: list[Endpoint]) -> bool:
@@ -185,6 +202,17 @@ def _has_known_ends(architecture: Architecture, node: Node, endpoints: list[Endp
         and all(each.name is not None for each in endpoints)
         and not any(each.open for each in components)
     )
+
+
+def _find_meant(own_name: str, own_names: list[str], node: Node) -> str | None:
+    """Return the name that looks like another one, beside what all names of a node begin with."""
+    beginnings = (f"{node.full_name}/", f"{node.full_name.rpartition('/')[0]}/")
+
+    def shorten(name: str) -> str:
+        return name.removeprefix(next(filter(name.startswith, beginnings), ""))
+
+    shorter = {shorten(each): each for each in own_names}
+    return shorter.get(find_closest(shorten(own_name), shorter) or "")
 
 
 def _is_of_ros(own_name: str, name: str | None) -> bool:

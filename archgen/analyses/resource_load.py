@@ -13,7 +13,7 @@ from archgen.timing.analysis import Analysis, HostLoad
 from archgen.timing.figures.figure_wording import format_number
 from archgen.timing.figures.value_arithmetic import add_values
 from archgen.timing.load.host_loads import activity_share
-from archgen.timing.system.unplaced_pools import find_unplaced_pools
+from archgen.timing.system.thread_pools import find_unplaced_pools
 
 
 def overloaded_host(architecture: Architecture, analysis: Analysis, *, limit: Fraction) -> Iterator[Diagnostic]:

@@ -129,13 +129,17 @@ def _find_domain_fault(text: str) -> tuple[str, str, Severity] | None:
     return None
 
 
+_HANDING_ON = frozenset({"ros_gz_bridge", "ros_gz_image"})
+"""Packages of bridges to a simulator: the times in what they hand on are the simulator's, whatever clock they have."""
+
+
 def two_clocks(architecture: Architecture) -> Iterator[Diagnostic]:
     """One end of a connection lives by simulated time, and the other one by the system's."""
     clock_writers = {end.node for end in architecture.endpoints if end.name == "/clock" and end.use == "publishes"}
     shared_places = {each.at for each in architecture.ros_parameters}
     for (writer, reader), ends in _gather_ends(architecture, _differ_in_time).items():
         simulated, other = sorted(ends[0], key=lambda end: end.clock != "simulated")
-        if other.node in clock_writers:
+        if other.node in clock_writers or architecture.nodes[other.node].package in _HANDING_ON:
             continue
         # What one of the two says by itself is what is odd, not what holds for all.
         evidences = [end.evidence["clock"] for end in (simulated, other) if "clock" in end.evidence]

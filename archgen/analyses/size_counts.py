@@ -79,7 +79,8 @@ class ProgressCounts:
     """How many of a set of components have each kind of information.
 
     `described`: a functionality. `typed`: at least one port, and a type for each output. `mapped`: a node written in
-    the project. `timed`: a timing, on the component or on all of its nodes. `traced`: a declared requirement.
+    the project. `timed`: a timing, on the component or on all of its nodes. `traced`: a declared requirement. `seen`: each
+    of its ends was seen on a robot that ran; None where nobody looked at one.
     """
 
     scope: Literal["project", "group", "partner"]
@@ -92,6 +93,7 @@ class ProgressCounts:
     mapped: int
     timed: int
     traced: int
+    seen: int | None = None
 
 
 def measure_size(architecture: Architecture) -> ArchitectureSize:
@@ -170,10 +172,12 @@ def count_mapped_connections(architecture: Architecture) -> int:
     return sum(bool(c.outputs) and named_outputs.issuperset(c.outputs) for c in architecture.connections)
 
 
-def measure_progress(architecture: Architecture, selected: frozenset[str] | None = None) -> tuple[ProgressCounts, ...]:
+def measure_progress(
+    architecture: Architecture, selected: frozenset[str] | None = None, seen: frozenset[str] | None = None
+) -> tuple[ProgressCounts, ...]:
     """Count for the project, each group, each partner, and (if there are partners) the components without an owner.
 
-    `selected` are the ids of the components that count, None for all.
+    `selected` are the ids of the components that count, None for all; `seen` those that were seen on a robot, if any was.
     """
     # For each component, one entry for each of its written nodes: whether that node has a timing for it.
     nodes_of = defaultdict[str, list[bool]](list)
@@ -197,16 +201,20 @@ def measure_progress(architecture: Architecture, selected: frozenset[str] | None
             mapped=sum(c.id in nodes_of for c in members),
             timed=sum(c.timing is not None or (c.id in nodes_of and all(nodes_of[c.id])) for c in members),
             traced=sum(any(r.is_id and r.text in architecture.requirements for r in c.requirements) for c in members),
+            seen=None if seen is None else sum(c.id in seen for c in members),
         )
+
+    owned = defaultdict[str, list[Component]](list)
+    for each in all_components:
+        for owner in dict.fromkeys(each.owners):
+            owned[owner].append(each)
 
     def list_rows() -> Iterator[ProgressCounts]:
         yield measure_set("project", project.id, project.title, all_components)
         for group in architecture.groups.values():
             yield measure_set("group", group.id, group.title, group.components.values())
         for partner in architecture.partners.values():
-            yield measure_set(
-                "partner", partner.id, partner.title, (c for c in all_components if partner.id in c.owners)
-            )
+            yield measure_set("partner", partner.id, partner.title, owned.get(partner.id, ()))
         if architecture.partners and any(c.owner is None for c in all_components):
             yield measure_set("partner", "", "(nobody)", (c for c in all_components if c.owner is None))
 

@@ -11,6 +11,13 @@ from archgen.diagnostics.source_span import Span
 from archgen.model.architecture import Architecture
 from archgen.model.declared_timing import Timing
 from archgen.model.node import Endpoint, Node
+from archgen.model.process_scheduling import (
+    MAX_PRIORITY,
+    find_process_scheduling,
+    heeds_priorities,
+    list_pinned_cores,
+    list_process_timings,
+)
 from archgen.model.start_up import NO_START, SIGN_KEYS, StartUp
 
 
@@ -79,9 +86,12 @@ def _find_unactivated(architecture: Architecture) -> Iterator[Diagnostic]:
     for node in architecture.nodes.values():
         if node.start and node.start.by:
             managers[node.start.by.id].append(node.id)
+    called_names = {end.name for end in architecture.endpoints if end.use == "calls"}
     usual = max(managers, key=lambda name: len(managers[name]), default=None)
     for node in architecture.nodes.values():
         is_left = (node.start or NO_START).wanted_state is None and node.full_name not in managed_names
+        # A program that calls this service of it is its manager, too.
+        is_left = is_left and f"{node.full_name}/change_state" not in called_names
         if "lifecycle" in node.kinds and is_left:
             by_help = f"`start: {{by: {usual}}}`" if usual else "`start: {by: NODE}` with the node that manages it"
             yield Diagnostic(
@@ -219,6 +229,52 @@ def indirect_command(architecture: Architecture) -> Iterator[Diagnostic]:
         )
 
 
+def uneven_process(architecture: Architecture) -> Iterator[Diagnostic]:
+    """Parts of one process have different priorities, or are pinned to different cores: who starts it can give it only one."""
+    processes: dict[tuple[str, str], list[Node]] = defaultdict(list)
+    for node in architecture.nodes.values():
+        processes["container" if node.container else "node", node.container or node.id].append(node)
+    for (kind, process), nodes in processes.items():
+        container = architecture.containers[process] if kind == "container" else None
+        # A program of its own may give each of its threads what it likes.
+        is_known = container.package is None if container else nodes[0].is_generated
+        # An order of its own, by priority: they are those of callbacks in its threads.
+        if not is_known or (container or nodes[0]).scheduling in {"fixed_priority", "non_preemptive"}:
+            continue
+        told = find_process_scheduling(architecture, nodes)
+        timings = list_process_timings(nodes)
+        urgent = [each for each in timings if each and each.priority is not None]
+        pinned = [each for each in timings if each and list_pinned_cores(each)]
+        name = f"the container `{process}`" if kind == "container" else f"`{process}`"
+        is_uneven = urgent and len({each.priority if each else None for each in timings}) > 1
+        if is_uneven and heeds_priorities(architecture, nodes):
+            yield _tell_uneven(name, "priority", urgent, nodes[0])
+        elif urgent and not is_uneven and not 1 <= (urgent[0].priority or 0) <= MAX_PRIORITY:
+            yield Diagnostic(
+                "uneven-process",
+                f"{name} has the priority {urgent[0].priority}: SCHED_FIFO has those from 1 to {MAX_PRIORITY}",
+                urgent[0].places["priority"],
+                help="write one of these; the larger one runs first",
+                element=nodes[0].id,
+            )
+        if pinned and not told.cores:
+            yield _tell_uneven(name, "core", pinned, nodes[0])
+
+
+def _tell_uneven(name: str, key: str, timings: list[Timing], first: Node) -> Diagnostic:
+    places = [each.places.get(key) or each.places["cores"] for each in timings]
+    what = "does not have one priority" if key == "priority" else "is not pinned to one set of cores"
+    word = {"priority": "priority", "core": "cores"}[key]
+    return Diagnostic(
+        "uneven-process",
+        f"{name} {what} in all that it runs: who starts a process gives all of its threads the same, so none is given",
+        places[0],
+        labels=tuple(Label(place, "and here") for place in places[1:2]),
+        help=f"write the same {word} for all that it runs, or let this run in a process of its own",
+        element=first.id,
+    )
+
+
 RULES = (
     (shared_port, Severity.WARNING),
     (silent_node, Severity.WARNING),
@@ -226,4 +282,5 @@ RULES = (
     (idle_start, Severity.WARNING),
     (endless_once, Severity.WARNING),
     (indirect_command, Severity.WARNING),
+    (uneven_process, Severity.NOTE),
 )

@@ -9,6 +9,7 @@ from typing import Literal
 from archgen.diagnostics.source_span import NO_SPAN, Span
 from archgen.frozen import dataclass, field
 from archgen.model.node import NodeStatus
+from archgen.model.process_scheduling import NO_SCHEDULING, ProcessScheduling
 from archgen.model.quantity import Quantity
 from archgen.model.start_up import PHASES, LifecycleState, ReadyConditions, StartPhase
 
@@ -106,15 +107,24 @@ class RosLaunch:
     file_values: Mapping[str, object] = field(default_factory=dict)
     own_values: Mapping[str, object] = field(default_factory=dict)
     value_commands: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
+    untyped_names: frozenset[str] = frozenset()
+    """Parameters whose value is a variable of the environment alone, which may hold a number: nobody says that it is a text."""
     arguments: tuple[str, ...] = ()
     """What the program gets before the arguments of ROS."""
     remaps: Mapping[str, str] = field(default_factory=dict)
     """New names by those that the program uses."""
+    shares_memory: bool = False
+    """Whether it hands messages to others in its container without a copy."""
 
     @property
     def full_name(self) -> str:
         """The namespace and the name."""
         return f"{self.namespace.rstrip('/')}/{self.name}"
+
+    @property
+    def all_values(self) -> dict[str, object]:
+        """The values that count."""
+        return {**self.earlier_values, **self.file_values, **self.own_values}
 
 
 @dataclass(frozen=True, slots=True)
@@ -155,6 +165,8 @@ class StartStep:
     environment: Mapping[str, str] = field(default_factory=dict)
     directory: str | None = None
     user: str | None = None
+    scheduling: ProcessScheduling = NO_SCHEDULING
+    """That of its process; of what a container loads nothing."""
     needs_rights: tuple[str, ...] = ()
 
     @property

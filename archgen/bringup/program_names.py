@@ -5,8 +5,10 @@ Scripts, launch files and generated code ask here, so that what one of them writ
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 
+from archgen.derivation.ros_names import shared_topic_names
 from archgen.derivation.wire.remap_rules import ACTION_PARTS, NodeNames, list_written_remaps
 from archgen.frozen import dataclass
 from archgen.model.architecture import Architecture
@@ -21,20 +23,49 @@ def list_generated_nodes(architecture: Architecture) -> list[Node]:
     return [each for each in nodes if each.is_generated and (each.package, each.executable) not in made_programs]
 
 
+def find_node_language(node: Node) -> str:
+    """Return the language that a node is generated in: what it says, C++ for what a container loads, else Python."""
+    return node.language or ("cpp" if is_loadable(node) else "python")
+
+
+def is_loadable(node: Node) -> bool:
+    """Whether a node is a class that a container loads: it stands in one, has a `plugin`, or says so by its kind."""
+    return node.container is not None or node.plugin is not None or not {"composable", "nodelet"}.isdisjoint(node.kinds)
+
+
 def name_package(architecture: Architecture, node: Node) -> str:
-    """Return the package of a node: what it says, else one for the nodes of its group."""
+    """Return the package of a node: what it says, else one for the nodes of its group.
+
+    One build makes no package of two languages: beside nodes in Python, those in C++ have a package of their own.
+    """
     if node.package:
         return node.package
-    group = next((architecture.components[each].group for each in node.implements), None)
-    return make_ros_name(f"{architecture.project.id}_{group or 'nodes'}")
+    group = _find_group(architecture, node)
+    is_second = find_node_language(node) == "cpp" and any(
+        each.is_generated
+        and not each.package
+        and find_node_language(each) == "python"
+        and _find_group(architecture, each) == group
+        for each in architecture.nodes.values()
+    )
+    return make_ros_name(f"{architecture.project.id}_{group or 'nodes'}{'_cpp' if is_second else ''}")
+
+
+def _find_group(architecture: Architecture, node: Node) -> str | None:
+    return architecture.components[node.implements[0]].group if node.implements else None
 
 
 def name_program(architecture: Architecture, node: Node) -> str:
-    """Return the executable of a node: what it says, else that of its component's type, else its own id."""
-    if node.executable:
-        return node.executable
+    """Return the executable of a node: what it says, else that of its component's type, else its own id.
+
+    Of a generic type there is a program for each of its uses: their messages differ.
+    """
     only_component = architecture.components[node.implements[0]] if len(node.implements) == 1 else None
-    return make_ros_name((only_component.component_type if only_component else None) or node.id)
+    component_type = (only_component.component_type if only_component else None) or ""
+    arguments = component_type.partition("<")[2]
+    if node.executable:
+        return make_ros_name(f"{node.executable}_{arguments}") if arguments and node.is_generated else node.executable
+    return make_ros_name(component_type or node.id)
 
 
 @dataclass(frozen=True, slots=True)
@@ -61,7 +92,8 @@ def name_plugin(node: Node, package_name: str, program_name: str) -> str:
 def group_by_program(architecture: Architecture, nodes: Iterable[Node]) -> dict[tuple[str, str], list[Node]]:
     """Return nodes by the package and the program that is generated for them."""
     groups: dict[tuple[str, str], list[Node]] = {}
-    for node in nodes:
+    # By their ids: which is the first one must not hang on the order of lines.
+    for node in sorted(nodes, key=lambda each: each.id):
         groups.setdefault((name_package(architecture, node), name_program(architecture, node)), []).append(node)
     return groups
 
@@ -91,53 +123,77 @@ def name_endpoints(
     """Yield each endpoint of the nodes of one program with its name in the program: that of the port.
 
     Where two ports have it, their components' names stand in front; where one port stands on several topics, what tells
-    these apart stands behind. Never their order: a line that moves in a partner's file must not give the messages of one
-    arm to the method that was written for the other.
+    their sources apart stands behind. Never their order: a line that moves in a partner's file must not give the messages
+    of one arm to the method that was written for the other.
     """
     ports_of_nodes = [_name_ports(endpoints.get(node.id, ())) for node in nodes]
-    words_by_place: dict[tuple[str, str, str], set[frozenset[str]]] = {}
+    words_by_place: dict[tuple[str, str, str], list[tuple[str, ...]]] = {}
     for ports in ports_of_nodes:
         for place, carried in ports.items():
-            words_by_place.setdefault(place, set()).add(frozenset(_tell_apart([each.label for each in carried])))
+            if len(carried) > 1:
+                carried.sort(key=_write_origin)
+            words_by_place.setdefault(place, []).append(_tell_apart(carried))
+    shared_words = {place: iter(_share_words(words)) for place, words in words_by_place.items()}
     for ports in ports_of_nodes:
-        for (use, flow, name), carried in ports.items():
-            in_order = sorted(carried, key=lambda each: each.label)
-            words = _tell_apart([each.label for each in in_order])
-            # Nodes of one program on different topics share its methods: these are counted by the topics' names.
-            has_words = len(words_by_place[use, flow, name]) == 1 and len(set(words)) == len(words) > 1
-            for number, (endpoint, word) in enumerate(zip(in_order, words, strict=True), start=1):
-                ending = f"_{word}" if has_words else f"_{number}" if number > 1 else ""
-                yield endpoint, make_identifier_in("python", f"{name}{ending}")
+        for place, carried in ports.items():
+            for endpoint, word in zip(carried, next(shared_words[place]), strict=True):
+                yield endpoint, make_identifier_in("python", f"{place[2]}_{word}" if word else place[2])
 
 
 def _name_ports(endpoints: Iterable[Endpoint]) -> dict[tuple[str, str, str], list[Endpoint]]:
     """Return what a node does by use, flow and name of the port, with its component's name where two ports have it."""
-    listed = list(endpoints)
-    own_names: dict[tuple[str, str, str], set[str]] = {}
-    for endpoint in listed:
-        own_names.setdefault(_place_name(endpoint), set()).add(endpoint.port or endpoint.label)
+    carried_by_place: dict[tuple[str, str, str], list[Endpoint]] = {}
+    for endpoint in endpoints:
+        carried_by_place.setdefault(_place_name(endpoint), []).append(endpoint)
     ports: dict[tuple[str, str, str], list[Endpoint]] = {}
-    for endpoint in listed:
-        use, flow, name = _place_name(endpoint)
-        if len(own_names[use, flow, name]) > 1:
-            name = make_snake_name("_".join((endpoint.port or endpoint.label).replace("/", ".").split(".")[-2:]))
-        ports.setdefault((use, flow, name), []).append(endpoint)
+    for (use, flow, short_name), carried in carried_by_place.items():
+        has_several_ports = len(carried) > 1 and len({each.port or each.label for each in carried}) > 1
+        for endpoint in carried:
+            name = short_name
+            if has_several_ports:
+                name = make_snake_name("_".join((endpoint.port or endpoint.label).replace("/", ".").split(".")[-2:]))
+            ports.setdefault((use, flow, name), []).append(endpoint)
     return ports
 
 
-def _tell_apart(topics: Sequence[str]) -> list[str]:
-    """Return for each topic what tells it from the others, in few words: `left` and `right` for `/left/state` and `/right/state`."""
-    parts = [topic.strip("/").split("/") for topic in topics]
-    shortest = min(map(len, parts), default=0)
+def _write_origin(endpoint: Endpoint) -> str:
+    """Return where what an end carries comes from, as a path: the output that it hears, else what is on the wire."""
+    return endpoint.sources[0].replace(".", "/") if len(endpoint.sources) == 1 else endpoint.label
+
+
+def _tell_apart(endpoints: Sequence[Endpoint]) -> tuple[str, ...]:
+    """Return for each endpoint what tells its origin from the others, in few words: `left` and `right` for `left/state` and `right/state`."""
+    if len(endpoints) == 1:
+        return ("",)
+    parts = [_write_origin(each).strip("/").split("/") for each in endpoints]
+    shortest = min(map(len, parts))
     # What all end with tells nothing; of what stands before it, as few words from the end as are not the same.
-    same = next((i for i in range(shortest) if len({each[-1 - i] for each in parts}) > 1), max(shortest - 1, 0))
+    same = next((i for i in range(shortest) if len({each[-1 - i] for each in parts}) > 1), shortest - 1)
     heads = [each[: len(each) - same] for each in parts]
     words = ["_".join(each) for each in heads]
-    for count in range(1, max(map(len, heads), default=1) + 1):
+    for count in range(1, max(map(len, heads)) + 1):
         words = ["_".join(each[-count:]) for each in heads]
         if len(set(words)) == len(words):
             break
-    return list(map(make_snake_name, words))
+    return tuple(map(make_snake_name, words))
+
+
+def _share_words(words_of_nodes: Sequence[tuple[str, ...]]) -> Sequence[tuple[str, ...]]:
+    """Return words that all nodes of one program have: theirs, else without what each repeats (`lidar` of `lidar_front`
+    beside `camera_front`), else numbers in the order of the origins.
+    """
+    if words_of_nodes[0] == ("",) and len({*words_of_nodes}) == 1:
+        return words_of_nodes
+    for choice in (words_of_nodes, list(map(_drop_repeated_words, words_of_nodes))):
+        if len({frozenset(words) for words in choice}) == 1 and all(len({*words}) == len(words) for words in choice):
+            return choice
+    return [tuple(f"{i}" if i > 1 else "" for i in range(1, len(words) + 1)) for words in words_of_nodes]
+
+
+def _drop_repeated_words(words: Sequence[str]) -> tuple[str, ...]:
+    parts = [word.split("_") for word in words]
+    repeated = set(parts[0]).intersection(*parts[1:]) if len(parts) > 1 else set[str]()
+    return tuple("_".join(part for part in each if part not in repeated) for each in parts)
 
 
 def _place_name(endpoint: Endpoint) -> tuple[str, str, str]:
@@ -145,11 +201,27 @@ def _place_name(endpoint: Endpoint) -> tuple[str, str, str]:
     return endpoint.use, endpoint.flow, short_name
 
 
-def choose_own_name(key: str, endpoints: Sequence[Endpoint], *, is_shared: bool) -> str:
-    """Return what a program itself calls a port: one that several nodes share cannot say where each of them has it."""
-    first = endpoints[0]
-    names = {each.name for each in endpoints}
-    return first.own_name or (first.name if len(names) == 1 and not is_shared else None) or key
+def choose_own_names(
+    architecture: Architecture, groups: Mapping[tuple[str, str, str], Sequence[Endpoint]]
+) -> dict[tuple[str, str, str], str]:
+    """Return what a program itself calls each of its ports: their names, which say nothing of where its nodes have them.
+
+    Absolute is what the model says so (`own_name: /tf`), and the topics that all nodes share. Ports of one name have their
+    use in front: `publishes/pose`.
+    """
+    shared_topics = shared_topic_names(architecture.shared_topics)
+    own_names: dict[tuple[str, str, str], str] = {}
+    for (use, flow, key), endpoints in groups.items():
+        names = {each.name for each in endpoints}
+        common_name = endpoints[0].name if len(names) == 1 and flow == "topic" else None
+        own_names[use, flow, key] = (
+            endpoints[0].own_name or (common_name if common_name in shared_topics else None) or key
+        )
+    counts = Counter(own_names.values())
+    return {
+        place: f"{place[0]}/{name}" if counts[name] > 1 and name == place[2] and not groups[place][0].own_name else name
+        for place, name in own_names.items()
+    }
 
 
 def find_common_message(endpoints: Sequence[Endpoint]) -> str | None:
@@ -168,23 +240,26 @@ class ProgramNames:
         generated_nodes = list_generated_nodes(architecture)
         self._programs = {each.id: name_node_program(architecture, each, ros) for each in generated_nodes}
         for nodes in group_by_program(architecture, generated_nodes).values():
-            if len(nodes) > 1:
-                self._name_shared_ports(nodes)
+            self._name_ports(architecture, nodes)
 
-    def _name_shared_ports(self, nodes: Sequence[Node]) -> None:
+    def _name_ports(self, architecture: Architecture, nodes: Sequence[Node]) -> None:
         for node in nodes:
             self._names[node.id] = []
-        for (_, flow, key), endpoints in group_endpoints(nodes, self._endpoints).items():
-            if find_common_message(endpoints) is None:
+        groups = group_endpoints(nodes, self._endpoints)
+        for place, own_name in choose_own_names(architecture, groups).items():
+            if find_common_message(groups[place]) is None:
                 continue
-            own_name = choose_own_name(key, endpoints, is_shared=True)
-            for endpoint in endpoints:
+            for endpoint in groups[place]:
                 if endpoint.name is not None:
-                    self._names[endpoint.node].append((flow, own_name, endpoint.name))
+                    self._names[endpoint.node].append((place[1], own_name, endpoint.name))
 
     def find_program(self, node: Node) -> NodeProgram:
         """Return what runs a node: what it says, completed by what generators make for it."""
         return self._programs.get(node.id) or NodeProgram(node.package, node.executable, node.plugin)
+
+    def is_generated(self, node: Node) -> bool:
+        """Whether generators make a node's program."""
+        return node.id in self._programs
 
     def find_remaps(self, node: Node) -> dict[str, str]:
         """Return what names of a node's program become, by what the program says. What resolves by itself is not there.

@@ -11,6 +11,7 @@ import json
 import math
 import re
 from collections.abc import Iterator, Mapping
+from dataclasses import replace
 
 from archgen.bringup.plan_shapes import RosLaunch
 from archgen.bringup.program_names import ProgramNames
@@ -66,6 +67,7 @@ def build_command(architecture: Architecture, node: Node, launch: RosLaunch | No
             *names,
             *remaps,
             *list_loading_options(launch),
+            *(("-e", "use_intra_process_comms:=true") if launch.shares_memory else ()),
         )
     return _run_in_ros_2(launch)
 
@@ -135,6 +137,20 @@ def list_needed_rights(node: Node) -> tuple[str, ...]:
     return tuple(rights)
 
 
+SUBSTITUTION = re.compile(
+    r"\$\((?:(?:find|find-pkg-share) (?P<package>[A-Za-z0-9_]+)|env (?P<variable>[A-Za-z_][A-Za-z0-9_]*))\)"
+)
+"""What is filled in where a node is started. Others would run something, or need what nothing here declares: they stay text."""
+
+
+_VARIABLE = re.compile(r"\$\(env [A-Za-z_][A-Za-z0-9_]*\)")
+
+
+def has_substitution(value: object) -> bool:
+    """Whether the value of a parameter is filled in where its node is started."""
+    return isinstance(value, str) and SUBSTITUTION.search(value) is not None
+
+
 _FLOAT_TYPES = frozenset({"float", "float[]"})
 
 
@@ -155,7 +171,7 @@ def describe_node_launch(architecture: Architecture, node: Node, program_names: 
     commands = {canonical_name(name, ros_1=ros_1): words for name, words in node.parameter_commands.items()}
     program = program_names.find_program(node)
     is_loaded = container is not None and not ros_1
-    return RosLaunch(
+    launch = RosLaunch(
         name=node.name,
         namespace=node.namespace,
         package=program.package,
@@ -171,6 +187,30 @@ def describe_node_launch(architecture: Architecture, node: Node, program_names: 
         value_commands={name: words for name, words in commands.items() if name not in own_values},
         arguments=node.arguments,
         remaps=program_names.find_remaps(node),
+        shares_memory=is_loaded and _may_share_memory(architecture, node),
+    )
+    text_types = {"string", None} if program_names.is_generated(node) else {"string"}
+    types = {canonical_name(name, ros_1=ros_1): each.type for name, each in declarations.items()}
+    untyped_names = (
+        name
+        for name, value in launch.all_values.items()
+        if isinstance(value, str) and _VARIABLE.fullmatch(value) and types.get(name) not in text_types
+    )
+    return replace(launch, untyped_names=frozenset(untyped_names))
+
+
+def _may_share_memory(architecture: Architecture, node: Node) -> bool:
+    """Whether rclcpp may hand messages of a loaded node on without a copy.
+
+    It refuses an end that keeps all or, before Jazzy, keeps messages for late readers; of a program that exists or was
+    observed nobody knows all of its ends.
+    """
+    topics = [each for each in architecture.endpoints if each.node == node.id and each.flow == "topic"]
+    return (
+        node.status != "existing"
+        and not node.observed
+        and bool(topics)
+        and all(each.qos.durability == "volatile" and each.qos.history == "keep_last" for each in topics)
     )
 
 
@@ -221,19 +261,21 @@ _ESCAPES = {code: f"\\u{code:04x}" for code in (*range(0x7F, 0xA0), 0x2028, 0x20
 def list_ros_2_options(launch: RosLaunch) -> Iterator[str]:
     """Yield the words behind `--ros-args` that give a node its parameters: those that count most stand last."""
     for name, value in launch.earlier_values.items():
-        yield from ("-p", f"{name}:={_format_value(value)}")
+        yield from ("-p", f"{name}:={_write_value(launch, name, value)}")
     for path in launch.parameter_files:
         yield from ("--params-file", path)
-    for name, value in launch.own_values.items():
+    filled = {name: value for name, value in launch.file_values.items() if has_substitution(value)}
+    # No file is filled in.
+    for name, value in {**filled, **launch.own_values}.items():
         # With the node's name it counts more than what a file says to this node, and to all nodes alike.
         place = f"{launch.name}:" if name in launch.file_values and launch.namespace == "/" else ""
-        yield from ("-p", f"{place}{name}:={_format_value(value)}")
+        yield from ("-p", f"{place}{name}:={_write_value(launch, name, value)}")
 
 
 def list_loading_options(launch: RosLaunch) -> Iterator[str]:
     """Yield the words that give a loaded node its parameters in ROS 2: who loads it reads no files."""
-    for name, value in {**launch.earlier_values, **launch.file_values, **launch.own_values}.items():
-        yield from ("-p", f"{name}:={_format_value(value)}")
+    for name, value in launch.all_values.items():
+        yield from ("-p", f"{name}:={_write_value(launch, name, value)}")
 
 
 def list_ros_1_preparations(launch: RosLaunch) -> Iterator[tuple[str, ...]]:
@@ -243,7 +285,8 @@ def list_ros_1_preparations(launch: RosLaunch) -> Iterator[tuple[str, ...]]:
             yield _set_in_ros_1(launch, name, value)
     for path in launch.parameter_files:
         yield ("rosparam", "load", path, launch.full_name)
-    for name, value in launch.own_values.items():
+    filled = {name: value for name, value in launch.file_values.items() if has_substitution(value)}
+    for name, value in {**filled, **launch.own_values}.items():
         if not _is_word_in_ros_1(name, value):
             yield _set_in_ros_1(launch, name, value)
 
@@ -258,7 +301,7 @@ def list_ros_1_options(launch: RosLaunch) -> Iterator[str]:
 
 def _set_in_ros_1(launch: RosLaunch, name: str, value: object) -> tuple[str, ...]:
     place = "" if name == _GLOBAL_IN_ROS_1 else launch.full_name
-    return ("rosparam", "set", f"{place}/{_nest_in_ros_1(name)}", _format_value(value))
+    return ("rosparam", "set", f"{place}/{_nest_in_ros_1(name)}", _write_value(launch, name, value))
 
 
 def _nest_in_ros_1(name: str) -> str:
@@ -274,6 +317,11 @@ def _is_word_in_ros_1(name: str, value: object) -> bool:
 
 def _is_simple(text: str) -> bool:
     return _SIMPLE_WORD.match(text) is not None and text.lower() not in _SPECIAL_WORDS
+
+
+def _write_value(launch: RosLaunch, name: str, value: object) -> str:
+    """Return the value of a parameter as YAML. What may be a number stands there without quotes: `$(env PORT)`."""
+    return str(value) if name in launch.untyped_names else _format_value(value)
 
 
 def _format_value(value: object) -> str:

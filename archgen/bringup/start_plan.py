@@ -24,9 +24,11 @@ from archgen.frozen import replace
 from archgen.model.architecture import Architecture
 from archgen.model.deployment import Container
 from archgen.model.node import Node
+from archgen.model.process_scheduling import NO_SCHEDULING, find_process_scheduling
 from archgen.model.ros_distro import is_ros_1
 from archgen.model.start_up import DEFAULT_PHASE, NO_START, PHASES, ReadyConditions, StartPhase
 
+_NETWORK_VARIABLE = re.compile(r"(?:ROS|RMW|FASTDDS|FASTRTPS|CYCLONEDDS|ZENOH)_")
 _UNSAFE_IN_FILES = re.compile(r"[^A-Za-z0-9_.-]+")
 _MAX_FILE_NAME = 100
 
@@ -60,6 +62,14 @@ def make_start_plan(architecture: Architecture) -> StartPlan:
         dropped=tuple(each for each in left_out if each.wait.need < FIRM_NEED),
         circles=tuple(each for each in left_out if each.wait.need >= FIRM_NEED),
     )
+
+
+def find_network_variables(steps: Iterable[StartStep]) -> dict[str, str]:
+    """Return the variables by which all processes of some steps find others: who looks at them has to have the same."""
+    # What a container loads has the environment of its process.
+    common = [set(step.environment.items()) for step in steps if step.command and step.kind != "composable"]
+    shared = set[tuple[str, str]].intersection(*common) if common else set()
+    return {name: text for name, text in sorted(shared) if _NETWORK_VARIABLE.match(name)}
 
 
 def _gather_awaited(waits: Iterable[Wait], steps: Mapping[str, StartStep]) -> Iterator[AwaitedStep]:
@@ -151,6 +161,8 @@ def _list_steps(
 
 def _make_container_step(architecture: Architecture, container: Container, phase: StartPhase) -> StartStep:
     launch = describe_container_launch(architecture, container)
+    nodes = [node for node in architecture.nodes.values() if node.container == container.id]
+    scheduling = find_process_scheduling(architecture, nodes)
     return StartStep(
         name_container(architecture, container.id),
         "container",
@@ -162,6 +174,8 @@ def _make_container_step(architecture: Architecture, container: Container, phase
         command=build_container_command(architecture, container, launch),
         container=container.id,
         environment=_list_variables(architecture, container),
+        scheduling=scheduling,
+        needs_rights=tuple(scheduling.list_needed_rights()),
     )
 
 
@@ -176,6 +190,7 @@ def _make_node_step(
     start = node.start or NO_START
     kind: StepKind = "program" if "program" in node.kinds else "composable" if node.container is not None else "node"
     launch = describe_node_launch(architecture, node, program_names)
+    scheduling = NO_SCHEDULING if node.container else find_process_scheduling(architecture, [node])
     return StartStep(
         node.id,
         kind,
@@ -197,7 +212,8 @@ def _make_node_step(
         environment={} if node.container is not None else _list_variables(architecture, node),
         directory=start.directory,
         user=start.user,
-        needs_rights=list_needed_rights(node),
+        scheduling=scheduling,
+        needs_rights=(*list_needed_rights(node), *scheduling.list_needed_rights()),
     )
 
 

@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from archgen.checking.all_rules import READING_RULES, index_all_rules
+from archgen.conformance.seen_record import RECORD_FILE
 from archgen.diagnostics.diagnostic import Diagnostic, Severity
 from archgen.diagnostics.rule_options import OptionValues
 from archgen.diagnostics.source_span import SourceTexts
@@ -74,10 +75,11 @@ class CheckedProject:
 
     @property
     def input_files(self) -> tuple[str, ...]:
-        """The paths of all files that outputs depend on: YAML, libraries, interface definitions, chapters, parameter files."""
+        """The paths of all files that outputs depend on: YAML, libraries, interface definitions, chapters, parameter files, records."""
+        kept = (RECORD_FILE,) if self.loaded_project.files.has_path(RECORD_FILE) else ()
         interface_paths = self.loaded_project.interface_files
         library_paths = self.loaded_project.library_files
-        return (*self.yaml_files, *library_paths, *interface_paths, *self.chapters.texts, *self.parameter_texts)
+        return (*self.yaml_files, *library_paths, *interface_paths, *self.chapters.texts, *self.parameter_texts, *kept)
 
     @property
     def has_errors(self) -> bool:

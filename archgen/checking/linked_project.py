@@ -18,6 +18,7 @@ from archgen.link import element_outline, named_files, node_parameter_files
 from archgen.link.link_memory import LinkMemory
 from archgen.link.node_parameter_files import ReadParameters
 from archgen.link.project_types import declare_project_types
+from archgen.link.reference_listening import HeardReferences
 from archgen.model.architecture import Architecture
 from archgen.model.known_parts import KnownParts
 
@@ -34,6 +35,8 @@ class PartMemory:
         self.linked = LinkMemory()
         self.derived = DerivedParts()
         self.named_files: named_files.FilesByGroup = KnownParts()
+        self.heard: HeardReferences | None = None
+        """What references mean is added here, in each variant; None where nobody asks. To be renewed for each version."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -71,6 +74,7 @@ def link_merged_project(merged_project: MergedProject, part_memory: PartMemory |
         damaged_elements=damaged_elements,
         is_partial=loaded_project.partial,
         memory=linked_parts,
+        heard=part_memory.heard if part_memory else None,
     )
     read_parameters = node_parameter_files.read_node_parameters(
         merged_table, linked_architecture, loaded_project.files if merged_project.is_folder else None
@@ -111,4 +115,6 @@ def _has_last_day(architecture: Architecture) -> bool:
         *(each.deprecated for each in architecture.types.values()),
         *(each.deprecated for each in architecture.component_types.values()),
     )
-    return any(deprecated is not None and deprecated.until is not None for deprecated in words)
+    return any(each.date for each in architecture.milestones.values()) or any(
+        deprecated is not None and deprecated.until is not None for deprecated in words
+    )

@@ -27,18 +27,22 @@ from archgen.findings import (
 from archgen.frozen import NamedTuple, replace
 from archgen.installed_plugins import RULES, list_entries
 from archgen.language.language_tables import PLAIN_SECTIONS
+from archgen.link.known_programs import find_unlike_programs
 from archgen.model.architecture import Architecture
 from archgen.timing.run_analysis import AnalysisMemory
 
 
 def judge_merged_project(
-    merged_project: MergedProject, analysis_memory: AnalysisMemory, part_memory: PartMemory | None = None
+    merged_project: MergedProject, analysis_memory: AnalysisMemory | None, part_memory: PartMemory | None = None
 ) -> CheckedProject:
-    """Run the stages behind merging; what `part_memory` knows from another variant is not made anew."""
+    """Run the stages behind merging; what `part_memory` knows from another variant is not made anew.
+
+    Without `analysis_memory` timing is not judged.
+    """
     loaded_project = merged_project.loaded_project
     linked_project = link_merged_project(merged_project, part_memory)
     architecture, read_parameters = linked_project.architecture, linked_project.parameters
-    analysis = analyses.analyse_timing(architecture, analysis_memory)
+    analysis = analyses.analyse_timing(architecture, analysis_memory) if analysis_memory else None
     project_chapters, content_findings = read_named_contents(merged_project, linked_project, part_memory)
     linking_errors = list_structural_errors(
         (*merged_project.diagnostics, *linked_project.interface_findings, *linked_project.link_findings)
@@ -62,7 +66,8 @@ def judge_merged_project(
         *read_parameters.diagnostics,
         *error_aftermath.drop_aftermath(
             (
-                *analyses.check_architecture(architecture, analysis, rule_options),
+                *analyses.check_architecture(architecture, analysis, rule_options, waiting_rules),
+                *find_unlike_programs(architecture),
                 *_judge_by_packages(architecture, rule_options),
             ),
             merged_project.reading_errors,
@@ -72,7 +77,7 @@ def judge_merged_project(
         *rule_table.check_rule_settings(loaded_project.rule_spans.items(), index_all_rules()),
     )
     reported_findings, silenced_findings = _settle_findings(
-        all_diagnostics, merged_project, linked_project, is_complete=not waiting_rules
+        all_diagnostics, merged_project, linked_project, is_complete=not waiting_rules and analysis_memory is not None
     )
     return CheckedProject(
         loaded_project,

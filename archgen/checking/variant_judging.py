@@ -36,13 +36,13 @@ class UnknownVariantError(Exception):
 
 def judge_in_variants(
     merged_project: MergedProject,
-    analysis_memory: AnalysisMemory,
+    analysis_memory: AnalysisMemory | None,
     variant_names: Sequence[str] | None,
     part_memory: PartMemory | None = None,
 ) -> CheckedProject:
     """Judge a merged project, and, where it has variants, as it stands in each of those that are asked for (None: all).
 
-    What `part_memory` knows of other versions of the project is not made anew.
+    What `part_memory` knows of other versions of the project is not made anew. Without `analysis_memory` timing is not judged.
     """
     if "variants" not in merged_project.table.entries:
         return judge_merged_project(merged_project, analysis_memory, part_memory)
@@ -53,7 +53,8 @@ def judge_in_variants(
     merged_project = replace(
         merged_project, loaded_project=replace(loaded_project, files=RememberedFiles(loaded_project.files))
     )
-    analysis_memory.make_room(len(mapping_values.get_mapping(merged_project.table, "variants").entries) + 1)
+    if analysis_memory:
+        analysis_memory.make_room(len(mapping_values.get_mapping(merged_project.table, "variants").entries) + 1)
     checked_project = judge_merged_project(merged_project, analysis_memory, part_memory)
     judge = _VariantJudge(merged_project, checked_project, analysis_memory, part_memory)
     judged_names = variant_order.list_judged(checked_project.architecture.variants)
@@ -135,7 +136,7 @@ class _VariantJudge:
         self,
         merged_project: MergedProject,
         checked_project: CheckedProject,
-        analysis_memory: AnalysisMemory,
+        analysis_memory: AnalysisMemory | None,
         part_memory: PartMemory | None = None,
     ) -> None:
         from archgen.link.variants import variant_laying, variant_order

@@ -10,6 +10,11 @@ VERB_GROUPS: dict[str, dict[str, str]] = {
     "write": {
         "init": "Start a project, or take one over from a spreadsheet.",
         "new": "Add a group, a component, an instance, a node, a partner, ...: `archgen new --help`.",
+        "rename": "Rename an element in all files, proved to change nothing else.",
+        "move": "Move an element into another group or file, split off with its comments.",
+        "split": "Put each group, component or section of a file into a file of its own.",
+        "undo": "Take back the last rename, move or split.",
+        "fmt": "Lay the files out in one style; --check for CI.",
         "import": "Take over from ROS, tables, ReqIF, XMI, AADL, ...: `archgen import --help`.",
         "serve": "Show the site while its files are edited.",
     },
@@ -22,6 +27,7 @@ VERB_GROUPS: dict[str, dict[str, str]] = {
     },
     "look": {
         "show": "Show an element: ports, readers, nodes, place in the files.",
+        "find": "Find what words name, or what is said with them.",
         "list": "List elements, connections or backends, as text, CSV or JSON.",
         "stats": "Show size and progress.",
         "start": "Show the plan of the start-up: steps, commands, what each waits for.",
@@ -29,6 +35,7 @@ VERB_GROUPS: dict[str, dict[str, str]] = {
     "publish": {
         "build": "Make everything: report, site, diagrams, packed file.",
         "report": "Write the report as Word, PDF or workbook.",
+        "slides": "Write slides for a meeting, as PowerPoint.",
         "site": "Write the static web site.",
         "diagram": "Draw the diagrams.",
     },
@@ -36,6 +43,9 @@ VERB_GROUPS: dict[str, dict[str, str]] = {
         "diff": "Compare two revisions, folders or files: what changed, and what it means.",
         "review": "Make all that the review of a change needs, in one folder.",
         "merge-check": "Say what would be wrong if open branches were merged.",
+        "merge": "Merge a branch by what it says, following what was renamed or moved; checked.",
+        "impact": "Show what rests on a partner: what stops if they are late.",
+        "todo": "Show what a partner has to do: what most rests on first.",
         "owners": "Show who owns what, or write CODEOWNERS.",
         "interfaces": "Write what flows between two partners, to be signed by both.",
         "sign": "Sign what flows between two partners, so that reviews hold changes against it.",
@@ -50,6 +60,8 @@ VERB_GROUPS: dict[str, dict[str, str]] = {
 """The verbs that people use, with their lines in the help, by what they are for."""
 PLUMBING = {
     "schema": "Write the JSON Schema with which editors offer the project's own names.",
+    "lsp": "Answer an editor over the Language Server Protocol.",
+    "mcp": "Answer an assistant over the Model Context Protocol.",
     "merge-driver": "Merge two versions of a file by what they say; for git.",
     "check-requests": "Hold the open requests of a repository against each other; for CI.",
     "comment": "Put a text on the pull request, as one comment that is kept current.",

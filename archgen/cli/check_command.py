@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, NoReturn
 
 import click
 
-from archgen.cli import command_support, finding_documents, shared_options
+from archgen.cli import asked_files, command_support, finding_documents, shared_options
 from archgen.diagnostics.diagnostic import Severity
 from archgen.diagnostics.safe_text import make_visible
 from archgen.frozen import replace
@@ -88,7 +88,7 @@ def command(  # noqa: PLR0913 - one for each option
     2 for wrong usage. A project with variants is checked in each of them; a finding that does not hold in all of them says
     in which. --update-baseline writes the --baseline, or archgen-baseline.yaml in the project.
     """
-    project, files = _find_asked_files(paths, project)
+    project, files = asked_files.find_asked_files(paths, project)
     if update_baseline:
         _refuse_partial_baseline(
             {"--format": form != "text", "--changed-since": changed_since, "--variant": variant, "--select": select}
@@ -116,8 +116,8 @@ def command(  # noqa: PLR0913 - one for each option
 
 def _watch(project: Path | None, check_once: Callable[[], int]) -> None:
     """Check, and check again whenever a file below the project is saved."""
+    from archgen.live import file_watch
     from archgen.project.project_search import ProjectNotFoundError, find_project
-    from archgen.serve import file_watch
 
     with command_support.explain_wrong_usage(ProjectNotFoundError):
         places = file_watch.WatchedPlaces((find_project(project)[0],))
@@ -183,28 +183,6 @@ def _check_once(  # noqa: PLR0913 - one for each option
     return command_support.exit_status(reported.findings, strict=strict) or int(strict and bool(reported.cured_entries))
 
 
-def _find_asked_files(paths: tuple[Path, ...], project: Path | None) -> tuple[Path | None, tuple[Path, ...]]:
-    """Return the project that is asked for, and the files of it whose findings alone are; none for all."""
-    if not paths:
-        return project, ()
-    if project is not None:
-        other_paths = [path for path in paths if not os.path.isfile(path)]  # noqa: PTH113 - Path.is_file may raise
-        if other_paths:
-            msg = f"the project is named twice: {other_paths[0]} and -C {project}"
-            raise click.UsageError(msg)
-        return project, paths
-    from archgen.project.project_search import PROJECT_FILE, find_project_of_slice
-
-    if len(paths) == 1:
-        folder = find_project_of_slice(paths[0])
-        return folder or paths[0], paths if folder else ()
-    folders = [path.resolve().parent if path.name == PROJECT_FILE else find_project_of_slice(path) for path in paths]
-    if folders[0] is None or any(folder != folders[0] for folder in folders):
-        msg = f"these are not files of one project: {', '.join(map(str, paths))}"
-        raise click.UsageError(msg)
-    return folders[0], paths
-
-
 def _check_asked(
     project: Path | None, files: tuple[Path, ...], version_cache: VersionCache | None, *, fix: bool
 ) -> tuple[CheckedProject, frozenset[str]]:
@@ -213,8 +191,7 @@ def _check_asked(
     A single one that the project does not read is a project by itself.
     """
     checked_project = command_support.check_or_exit(project, version_cache)
-    root = os.path.realpath(checked_project.root)
-    names = {os.path.relpath(os.path.realpath(file), root).replace(os.sep, "/"): file for file in files}
+    names = asked_files.name_files(checked_project, files)
     known_files = {*checked_project.sources.file_names(), *checked_project.loaded_project.broken_files}
     for name in sorted(names.keys() - known_files):
         command_support.print_warning(
@@ -237,6 +214,7 @@ def _apply_fixes(checked_project: CheckedProject, names: frozenset[str]) -> Chec
     """Write the fixes that are certain; return the project with them."""
     from archgen import pipeline
     from archgen.edit.certain_fixes import plan_certain_fixes
+    from archgen.project.project_loading import load_from_files
 
     for _ in range(_MAX_ROUNDS):
         planned = list(plan_certain_fixes(checked_project, names))
@@ -244,7 +222,9 @@ def _apply_fixes(checked_project: CheckedProject, names: frozenset[str]) -> Chec
             break
         for edit, count in planned:
             command_support.write_edit(checked_project.root, edit, f"{count} fix{'es' * (count > 1)}")
-        checked_project = pipeline.check_project(checked_project.root / checked_project.loaded_project.first_file)
+        loaded_project = checked_project.loaded_project
+        loaded_project = load_from_files(loaded_project.files, loaded_project.first_file)
+        checked_project = pipeline.check_loaded_project(loaded_project, pipeline.VersionCache())
     return checked_project
 
 

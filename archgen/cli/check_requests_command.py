@@ -78,13 +78,13 @@ def _merge_requests(requests: Sequence[OpenRequest], branch: str, project: Path 
     from archgen.cli.merge_check_command import print_merge
     from archgen.git import GitError
     from archgen.merge.branch_merge import preview_merges
-    from archgen.products.merge_breaks import find_joint_breaks
+    from archgen.products.merge_breaks import BRANCH_JUDGES
     from archgen.project import ProjectNotFoundError
 
     names = {request.ref: f"#{request.number}" for request in requests}
     merges = []
     with command_support.explain_wrong_usage(GitError, ProjectNotFoundError):
-        for merge in preview_merges(project, "HEAD", [*names], find_joint_breaks, leaves_out_unmergeable=True):
+        for merge in preview_merges(project, "HEAD", [*names], BRANCH_JUDGES, leaves_out_unmergeable=True):
             merges.append(merge)
             ours, theirs = (tuple(names[ref] for ref in side) for side in merge.sides)
             print_merge(branch, replace(merge, sides=(ours, theirs)))

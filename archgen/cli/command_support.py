@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import os
 import sys
 import time
@@ -20,12 +21,13 @@ if TYPE_CHECKING:
     from archgen.edit.element_edit import FileEdit
     from archgen.edit.measured_slice import MeasuredSlice
     from archgen.edit.requirement_slice import RequirementSlice
-    from archgen.model.architecture import Architecture
+    from archgen.model.architecture import Architecture, Partner
     from archgen.model.selector_evaluation import Selection
     from archgen.model.selector_parser import SelectorProblem
     from archgen.pipeline import CheckedProject, VersionCache
     from archgen.products.output_options import OutputOptions
     from archgen.products.trusted_backends import TrustedRevision
+    from archgen.views.changes.site_changes import SiteChanges
     from archgen.views.pages.report_outline import DetailLevel
 
 FormatName = TypeVar("FormatName", bound=str)
@@ -50,7 +52,9 @@ def stand_or_exit(checked_project: CheckedProject, names: Sequence[str]) -> Chec
         return pipeline.stand_in_variants(checked_project, names)
 
 
-def find_trusted_revision(project: Path | None, revision: str | None) -> TrustedRevision | None:
+def find_trusted_revision(
+    project: Path | None, revision: str | None, version_cache: VersionCache | None = None
+) -> TrustedRevision | None:
     """Read what a revision says about the project's own backends; None if none is given: then all may run."""
     if not revision:
         return None
@@ -58,7 +62,7 @@ def find_trusted_revision(project: Path | None, revision: str | None) -> Trusted
     from archgen.products import trusted_backends
 
     with explain_wrong_usage(git.GitError):
-        return trusted_backends.read_trusted_revision(project, revision)
+        return trusted_backends.read_trusted_revision(project, revision, version_cache)
 
 
 def print_findings_above(checked_project: CheckedProject, *, lowest_severity: Severity = Severity.WARNING) -> None:
@@ -186,6 +190,16 @@ def explain_missing_versions() -> Iterator[None]:
         raise click.UsageError(make_visible(str(error))) from None
 
 
+def compare_since(since: str | None, project: Path | None, checked_project: CheckedProject) -> SiteChanges | None:
+    """Return what changed since a version, None where none is named."""
+    if since is None:
+        return None
+    from archgen.products import comparison_documents
+
+    with explain_missing_versions():
+        return comparison_documents.compare_since(since, project, checked_project)
+
+
 def read_input(path: Path, max_bytes: int) -> bytes:
     """Read a file, or the standard input for `-`. At most one byte more than `max_bytes`, so the caller sees what is
     too long.
@@ -229,7 +243,8 @@ def choose_format(
         return format_name or default
     if ending not in formats:
         *others, last = formats
-        msg = f"the ending of `{output}` names no format: end it in {', '.join(others)} or {last}, or give --format"
+        advice = f"{', '.join(others)} or {last}, or give --format" if others else last
+        msg = f"the ending of `{output}` names no format: end it in {advice}"
         raise click.UsageError(make_visible(msg))
     return formats[ending]
 
@@ -242,6 +257,13 @@ def write_edit(root: Path, edit: FileEdit, detail: str) -> None:
     with explain_write_errors():
         file_tree.write_file(target, edit.new_content)
     print_written(root / edit.file, detail)
+
+
+def print_diff(edit: FileEdit) -> None:
+    """Print what an edit changes in a file, with control characters made visible."""
+    from archgen.diagnostics.safe_text import make_visible
+
+    sys.stdout.writelines(f"{make_visible(line.rstrip())}\n" for line in edit.unified_diff())
 
 
 def write_output(document: str | bytes, output: Path | None) -> None:
@@ -286,6 +308,20 @@ def shorten_path(path: Path) -> Path:
         return path
 
 
+_LONG_WORK = 3.0
+"""Seconds after which it is worth saying how long the rest takes."""
+_SECONDS_PER_MINUTE = 60
+
+
+def describe_time_left(seconds: float, done: int, total: int) -> str:
+    """Say how long work that has taken some seconds goes on if all of it is alike; nothing for short work."""
+    if not 0 < done < total or seconds < _LONG_WORK:
+        return ""
+    left = math.ceil(seconds * (total - done) / done)
+    words = f"{left} s" if left < 2 * _SECONDS_PER_MINUTE else f"{math.ceil(left / _SECONDS_PER_MINUTE)} min"
+    return f", some {words} left"
+
+
 def make_progress_printer(label: str = "drawing") -> Callable[[int, int], None] | None:
     """Return a function that shows progress on a terminal, as done of total; None where the error stream is not a
     terminal.
@@ -294,6 +330,7 @@ def make_progress_printer(label: str = "drawing") -> Callable[[int, int], None] 
         return None
     # A list, so that the inner function can change it.
     last_shown = [0.0]
+    begin = time.monotonic()
 
     def show_progress(done: int, total: int) -> None:
         now = time.monotonic()
@@ -301,7 +338,8 @@ def make_progress_printer(label: str = "drawing") -> Callable[[int, int], None] 
             return
         last_shown[0] = now
         end = "\r\x1b[K" if done >= total else ""
-        sys.stderr.write(f"\r\x1b[K{label}: {done} of {total}{end}")
+        left = describe_time_left(now - begin, done, total)
+        sys.stderr.write(f"\r\x1b[K{label}: {done} of {total}{left}{end}")
         sys.stderr.flush()
 
     return show_progress
@@ -339,6 +377,20 @@ def require_host(architecture: Architecture, host: str) -> None:
         raise click.UsageError(
             make_visible(f"there is no host '{host}'; {did_you_mean(host, architecture.hosts) or known}")
         )
+
+
+def require_partner(architecture: Architecture, name: str) -> Partner:
+    """Return a partner by his id. Raise UsageError where a project has none of this id."""
+    from archgen.diagnostics.common_wording import join_first
+    from archgen.diagnostics.safe_text import make_visible
+    from archgen.diagnostics.suggestions import did_you_mean
+
+    partners = architecture.partners
+    if name not in partners:
+        known = f"the partners are {join_first(list(partners), 8)}" if partners else "the project has no partners"
+        guess = did_you_mean(name, partners) or known
+        raise click.UsageError(make_visible(f"there is no partner '{name}'; {guess}"))
+    return partners[name]
 
 
 def settle_problems(problems: Iterable[Diagnostic]) -> tuple[Diagnostic, ...]:

@@ -17,9 +17,10 @@ from archgen.frozen import replace
 
 if TYPE_CHECKING:
     from archgen.conformance.observed_robot import ObservedRobot
-    from archgen.conformance.robot_comparison import RobotComparison
+    from archgen.conformance.robot_comparison import ComparedPart, RobotComparison
     from archgen.importers.robot_observation import ObservationOptions
     from archgen.pipeline import CheckedProject
+    from archgen.products.robot_conformance import ConformanceReport
 
 _MAX_UNREAD = 10
 """So many lines for what could not be read of a robot; the rest is counted."""
@@ -78,6 +79,19 @@ _MAX_UNREAD = 10
     type=click.Path(path_type=Path, exists=True, dir_okay=False),
     help="Keep the findings that FILE knows quiet.",
 )
+@click.option(
+    "--adopt",
+    "adopts",
+    is_flag=True,
+    help="Write into PROJECT what the robot knows and the design does not say; with --only, what differs there, too.",
+)
+@click.option("--dry-run", "is_dry_run", is_flag=True, help="Print what --adopt would write as a patch.")
+@click.option(
+    "--keep",
+    "kept_name",
+    metavar="NAME",
+    help="Keep in PROJECT what came out, under this name of the robot, for the site and `archgen stats`.",
+)
 def command(  # noqa: PLR0913 - one for each option
     *,
     project: Path | None,
@@ -91,6 +105,9 @@ def command(  # noqa: PLR0913 - one for each option
     strict: bool,
     baseline: Path | None,
     wants_recorder: bool,
+    adopts: bool,
+    is_dry_run: bool,
+    kept_name: str | None,
 ) -> None:
     """Hold PROJECT against the robot that exists, and show where both differ.
 
@@ -109,12 +126,17 @@ def command(  # noqa: PLR0913 - one for each option
     from archgen.products import robot_conformance
 
     _refuse_unknown_rules(rules)
+    _refuse_wrong_adoption(form, adopts=adopts, is_dry_run=is_dry_run)
     checked_project = command_support.check_or_exit(project)
     for host in hosts:
         command_support.require_host(checked_project.architecture, host)
     options = _read_options(checked_project, launch_files, arguments, variables)
     robots = [_observe_or_exit(path, checked_project, options) for path in paths or _list_named_paths(checked_project)]
     command_support.print_findings_above(checked_project, lowest_severity=Severity.ERROR)
+    if adopts:
+        checked_project = _adopt_remedies(checked_project, robots, ComparedPart(hosts), rules, is_dry_run=is_dry_run)
+        if is_dry_run:
+            return
     report = robot_conformance.hold_against_robots(checked_project, robots, ComparedPart(hosts), baseline)
     findings = [each for each in report.reported.findings if not rules or each.rule in rules]
     lines = [line for comparison in report.comparisons for line in _describe_comparison(comparison)]
@@ -129,10 +151,73 @@ def command(  # noqa: PLR0913 - one for each option
         command_support.print_findings(findings, checked_project, sys.stdout)
     else:
         click.echo("no differences")
+    if kept_name is not None:
+        _keep_report(checked_project, report, kept_name)
+    _print_what_is_left(report, baseline, adopts=adopts)
+    sys.exit(max(command_support.exit_status(findings, strict=strict), int(checked_project.has_errors)))
+
+
+def _print_what_is_left(report: ConformanceReport, baseline: Path | None, *, adopts: bool) -> None:
+    gap_count = sum(each.is_gap for comparison in report.comparisons for each in comparison.remedies)
+    if gap_count and not adopts:
+        click.echo(f"left open in the design, and told by the robot: {gap_count}; `--adopt` writes that", err=True)
     if report.reported.known_findings:
         count = command_support.summarise_counts(report.reported.known_findings)
         click.echo(make_visible(f"not shown: {count} that {baseline} knows"), err=True)
-    sys.exit(max(command_support.exit_status(findings, strict=strict), int(checked_project.has_errors)))
+
+
+def _keep_report(checked_project: CheckedProject, report: ConformanceReport, name: str) -> None:
+    """Write what came out into the record of the project."""
+    from archgen.conformance.seen_record import RECORD_FILE, SeenRecordError
+    from archgen.emit import file_tree, new_files
+    from archgen.products.robot_conformance import keep_report
+
+    path = checked_project.root / RECORD_FILE
+    try:
+        text = keep_report(checked_project, report, " ".join(name.split()))
+    except SeenRecordError as error:
+        raise click.ClickException(make_visible(f"nothing was kept: {error}")) from None
+    with command_support.explain_write_errors():
+        new_files.refuse_outside(path.parent, checked_project.root)
+        file_tree.write_file(path, text.encode())
+    click.echo(f"wrote {make_visible(str(command_support.shorten_path(path)))}", err=True)
+
+
+def _refuse_wrong_adoption(form: str, *, adopts: bool, is_dry_run: bool) -> None:
+    if is_dry_run and not adopts:
+        msg = "--dry-run shows what --adopt would write: give both"
+        raise click.UsageError(msg)
+    if adopts and (form != "text" or shared_options.find_asked_variants()):
+        msg = "--adopt is for people, and writes what counts in all variants: no --format, no --variant"
+        raise click.UsageError(msg)
+
+
+def _adopt_remedies(
+    checked_project: CheckedProject,
+    robots: Sequence[ObservedRobot],
+    part: ComparedPart,
+    rules: Sequence[str],
+    *,
+    is_dry_run: bool,
+) -> CheckedProject:
+    """Write what the robots know, or print it as a patch; return the project with it."""
+    from archgen import pipeline
+    from archgen.products.robot_conformance import adopt_remedies
+
+    adoption = adopt_remedies(checked_project, robots, part, rules)
+    for remedy, reason in adoption.left_out:
+        command_support.print_warning(f"not adopted: {remedy.message}: {reason}")
+    for edit in adoption.edits:
+        if is_dry_run:
+            # What is piped into `git apply` has to be exact.
+            patch = "".join(edit.unified_diff())
+            click.echo(make_visible(patch) if sys.stdout.isatty() else patch, nl=False)
+        else:
+            command_support.write_edit(checked_project.root, edit, "as on the robot")
+    click.echo(f"adopted: {len(adoption.adopted)}", err=True)
+    if is_dry_run or not adoption.edits:
+        return checked_project
+    return pipeline.check_project(checked_project.root / checked_project.loaded_project.first_file)
 
 
 def _refuse_unknown_rules(names: Sequence[str]) -> None:
@@ -198,7 +283,7 @@ def _describe_comparison(comparison: RobotComparison) -> Iterator[str]:
     robot = comparison.robot
     if robot.kind == "recording":
         count = sum(topic.count for topic in robot.topics)
-        topics = f"{comparison.seen_endpoints} of {comparison.endpoints} topics of the design"
+        topics = f"{comparison.seen_topics} of {comparison.topics} topics of the design"
         yield f"{robot.origin} (recording): {topics}; {count:,} messages of {len(robot.topics)} topics"
         yield from _list_unread(robot)
         return

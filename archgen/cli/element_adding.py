@@ -135,7 +135,6 @@ def add_element(  # noqa: PLR0913, PLR0917 - what is written, and where
     dry_run: bool,
 ) -> None:
     """Write an element to its place, or print the difference; refuse what is not proven. `hints` say what an open key takes."""
-    from archgen.diagnostics.safe_text import make_visible
     from archgen.edit import element_edit
     from archgen.edit.edit_proof import NewElement
 
@@ -143,17 +142,18 @@ def add_element(  # noqa: PLR0913, PLR0917 - what is written, and where
     try:
         edit = element_edit.plan_edit(checked_project, place, NewElement(element_id, body, hints or {}), full_id)
     except element_edit.EditRefusedError as error:
-        _raise_refusal(checked_project, error)
+        raise_refusal(checked_project, error)
     for old_id, new_id in edit.renamed_nodes:
         click.echo(f"the node `{old_id}` gets the id `{new_id}`, since its id follows from its component", err=True)
     if dry_run:
-        sys.stdout.writelines(f"{make_visible(line.rstrip())}\n" for line in edit.unified_diff())
+        command_support.print_diff(edit)
         return
     command_support.write_edit(checked_project.root, edit, f"`{full_id}` at line {edit.line}")
     click.echo("`archgen check` says what it still lacks.")
 
 
-def _raise_refusal(checked_project: CheckedProject, error: Any) -> NoReturn:  # noqa: ANN401 - imported where it is needed
+def raise_refusal(checked_project: CheckedProject, error: Any) -> NoReturn:  # noqa: ANN401 - imported where it is needed
+    """Print why an edit is refused, and what to do, and end."""
     from archgen.diagnostics.safe_text import make_visible
 
     if error.errors:

@@ -15,7 +15,8 @@ from archgen.diagnostics.suggestions import did_you_mean
 @click.option(
     "--distro", metavar="NAME", help="With `ros.TYPE`: the file and the line of each fact, for a distribution of ROS."
 )
-def command(rule: str | None, distro: str | None) -> None:
+@click.option("--format", "form", type=click.Choice(["text", "json"]), default="text", show_default=True)
+def command(rule: str | None, distro: str | None, form: str) -> None:
     """Explain RULE: why it is there, a bad and a good example. Without RULE, list all rules.
 
     For a component type that ships, such as `ros.amcl`, say where it was read.
@@ -24,6 +25,9 @@ def command(rule: str | None, distro: str | None) -> None:
         msg = "--distro goes with a component type that ships, such as `ros.amcl`"
         raise click.UsageError(msg)
     if rule is not None and (distro is not None or "." in rule):
+        if form == "json":
+            msg = "--format json goes with rules"
+            raise click.UsageError(msg)
         explain_sources(rule, distro)
         return
     from archgen import pipeline
@@ -36,7 +40,11 @@ def command(rule: str | None, distro: str | None) -> None:
 
     rules = index_rules((*pipeline.index_all_rules().values(), *COMPARISON_RULES, *GENERATION_RULES))
     width = find_width(sys.stdout)
-    if rule is None:
+    if form == "json" and (rule is None or name_rule(rule) in rules):
+        from archgen.emit.data.answers_json import format_rules_json
+
+        sys.stdout.write(format_rules_json(rules.values() if rule is None else [rules[name_rule(rule)]]))
+    elif rule is None:
         rows = ((name, str(each.severity), rule_pages.summarise_rule(each)) for name, each in rules.items())
         for line in align_rows(rows, width, indent=""):
             click.echo(line)

@@ -11,6 +11,8 @@ import click
 from archgen.cli import command_support, shared_options
 
 if TYPE_CHECKING:
+    from archgen.emit.workspace.workspace_plan import FileStep
+    from archgen.pipeline import CheckedProject
     from archgen.products.workspace_product import WorkspaceResult
     from archgen.views.pages.report_outline import DetailLevel
 
@@ -22,9 +24,17 @@ _CONFLICT_HELP = {
 }
 
 
+_STALE_WORDS = {
+    "new": "it is not there",
+    "changed": "it is not as the model says",
+    "removed": "the model needs it no more",
+    "merged": "it is a merge of two",
+}
+
+
 @click.command("generate")
-@shared_options.backend_argument("workspace")
-@shared_options.output_option("The folder", "NAME")
+@shared_options.backend_argument("workspace", required=False)
+@shared_options.output_option("The folder", "NAME, or what `generate.into` says,")
 @shared_options.select_option
 @click.option("--host", metavar="ID", help="Only what runs on this host.")
 @click.option("--option", "settings", metavar="KEY=VALUE", multiple=True, help="Set an option of the backend.")
@@ -38,15 +48,21 @@ _CONFLICT_HELP = {
     help="Take a file over as it stands, changed or not: archgen never touches it again.",
 )
 @click.option("--dry-run", is_flag=True, help="Say what would be done with each file, and do nothing.")
+@click.option(
+    "--check", "only_check", is_flag=True, help="Say which files are not as the model says, do nothing, and end with 1."
+)
+@click.option(
+    "--patch", is_flag=True, help="Print likely renames in code of yours as a patch of the workspace, and do nothing."
+)
 @shared_options.level_option
 @shared_options.revision_option
 @shared_options.keep_going_option
 @shared_options.trust_option
 @shared_options.project_option
 @shared_options.variant_option
-def command(  # noqa: PLR0913 - one for each option
+def command(  # noqa: C901, PLR0913 - one for each option
     *,
-    name: str,
+    name: str | None,
     output: Path | None,
     select: str | None,
     host: str | None,
@@ -54,6 +70,8 @@ def command(  # noqa: PLR0913 - one for each option
     overwrite: tuple[str, ...],
     keep: tuple[str, ...],
     dry_run: bool,
+    only_check: bool,
+    patch: bool,
     level: DetailLevel | None,
     revision: str | None,
     keep_going: bool,
@@ -62,13 +80,27 @@ def command(  # noqa: PLR0913 - one for each option
 ) -> None:
     """Make the workspace of the backend NAME: a folder that other tools and people work in, too.
 
-    NAME is a backend with `makes: workspace`; `archgen list --of backends` shows them. Files of others are never
-    touched, and neither are those that somebody changed since archgen wrote them.
+    NAME is a backend with `makes: workspace`; `archgen list --of backends` shows them. Without one all are made that
+    the project lists in `generate`. Files of others are never touched, and neither are those that somebody changed since
+    archgen wrote them.
     """
     from archgen.products.output_options import OutputOptions
     from archgen.products.workspace_product import WorkspaceRequest, write_workspace
 
-    checked_project = command_support.check_before_writing(project, keep_going=keep_going)
+    if name is None and (overwrite or keep or settings):
+        msg = "`--overwrite`, `--keep` and `--option` want the backend that they are for"
+        raise click.UsageError(msg)
+    try:
+        checked_project = command_support.check_before_writing(project, keep_going=keep_going)
+    except click.UsageError as error:  # without a project nothing is listed either
+        if name is None:
+            shared_options.refuse_missing_backend("workspace", f"; {error.message}")
+        raise
+    listed = checked_project.architecture.generate
+    if name is None and not listed.backends:
+        shared_options.refuse_missing_backend("workspace", ", or list what to make in `generate` of the project")
+    if output is None and (name is None or name in listed.backends):
+        output = _find_listed_folder(checked_project)
     if host is not None:
         command_support.require_host(checked_project.architecture, host)
     output_options = OutputOptions(
@@ -79,15 +111,41 @@ def command(  # noqa: PLR0913 - one for each option
         warn=command_support.print_warning,
         trusted_revision=command_support.find_trusted_revision(project, trust),
     )
-    request = WorkspaceRequest(host, _read_settings(settings), overwrite, keep, dry_run)
-    with command_support.explain_write_errors():
-        result = write_workspace(checked_project, output_options, name, output, request)
-    if result.findings:
-        command_support.print_findings(result.findings, checked_project, sys.stderr)
-    _print_result(result, dry_run=dry_run)
-    if not result.is_complete:
+    options = _read_settings(settings)
+    is_complete = True
+    for backend in listed.backends if name is None else [name]:
+        request = WorkspaceRequest(
+            host,
+            options,
+            overwrite,
+            keep,
+            dry_run or only_check or patch,
+            usual_options=listed.backends.get(backend, {}),
+        )
+        with command_support.explain_write_errors():
+            result = write_workspace(checked_project, output_options, backend, output, request)
+        if result.findings:
+            command_support.print_findings(result.findings, checked_project, sys.stderr)
+        if patch:
+            _print_patch(result)
+            continue
+        _print_result(result, backend if name is None else "", dry_run=dry_run, only_check=only_check)
+        is_complete &= result.is_complete and not (only_check and result.stale_steps)
+    if not is_complete:
         sys.exit(1)
     command_support.exit_by_findings(checked_project)
+
+
+def _find_listed_folder(checked_project: CheckedProject) -> Path | None:
+    """Return the folder that the project names for its workspace. A project may write into its own repository alone."""
+    written = checked_project.architecture.generate.into
+    if written is None:
+        return None
+    folder = checked_project.root / written
+    if not folder.resolve().is_relative_to(command_support.find_repository_folder(checked_project.root)):
+        msg = f"`generate.into` leads out of the project's repository: {written}; name that folder with `-o`"
+        raise click.UsageError(msg)
+    return folder
 
 
 def _read_settings(settings: tuple[str, ...]) -> dict[str, str]:
@@ -101,7 +159,14 @@ def _read_settings(settings: tuple[str, ...]) -> dict[str, str]:
     return values
 
 
-def _print_result(result: WorkspaceResult, *, dry_run: bool) -> None:
+def _print_patch(result: WorkspaceResult) -> None:
+    from archgen.products.own_code_patch import plan_renames
+
+    for edit in plan_renames(result):
+        command_support.print_diff(edit)
+
+
+def _print_result(result: WorkspaceResult, backend: str, *, dry_run: bool, only_check: bool) -> None:
     from archgen.diagnostics.safe_text import make_visible
 
     plan = result.plan
@@ -112,17 +177,32 @@ def _print_result(result: WorkspaceResult, *, dry_run: bool) -> None:
         for step in plan.steps:
             click.echo(make_visible(f"{step.verb:<8} {step.path}{f'  ({step.note})' if step.note else ''}"))
     for step in plan.steps:
+        _print_code_findings(step)
         if step.verb in _CONFLICT_HELP:
             text = f"{step.path} {_CONFLICT_HELP[step.verb].format(step.path, step.note)}"
             click.echo(f"error: {make_visible(text)}", err=True)
-        elif step.note and not dry_run:
+        elif step.note and not (dry_run or only_check):
             command_support.print_warning(f"{step.path}: {step.note}")
-    if not dry_run:
+    if only_check:
+        for step in result.stale_steps:
+            click.echo(make_visible(f"stale: {step.path} ({_STALE_WORDS[step.verb]})"))
+    elif not dry_run:
         counts = [
             (plan.count("new"), "new"),
             (plan.count("changed"), "changed"),
+            (plan.count("merged"), "merged by git, made anew"),
             (plan.count("removed"), "removed"),
             (plan.count("same"), "as before"),
         ]
         detail = ", ".join(f"{count} {words}" for count, words in counts if count) or "no files"
-        command_support.print_written(result.folder, detail)
+        command_support.print_written(result.folder, f"{backend}: {detail}" if backend else detail)
+
+
+def _print_code_findings(step: FileStep) -> None:
+    from archgen.diagnostics.safe_text import make_visible
+
+    for finding in step.findings:
+        path = finding.path or step.path
+        place = f"{path}:{finding.line}:{finding.column}" if finding.line else path
+        severity = "note" if finding.is_note else "error"
+        click.echo(f"{severity}: {make_visible(f'{place}: {finding.message}')}", err=True)

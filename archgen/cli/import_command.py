@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import os
 import re
 import sys
 from collections.abc import Iterable, Iterator, Sequence
@@ -63,6 +64,11 @@ class _ImportCommand(click.Command):
     "--env", "variables", metavar="NAME=VALUE", multiple=True, help="A variable of the environment of launch files."
 )
 @click.option("--distro", metavar="NAME", default="", help="The distribution of ROS (workspace).")
+@click.option(
+    "--group-by",
+    type=click.Choice(["folder", "package", "namespace", "codeowners"]),
+    help="What makes a group of a workspace's nodes.  [default: the folder of their packages, else their namespace]",
+)
 @click.option("--dry-run", is_flag=True, help="Say what would be taken, and write nothing.")
 @click.option(
     "--check",
@@ -81,6 +87,7 @@ def command(  # noqa: PLR0913, PLR0917 - one for each option
     launch_files: tuple[str, ...],
     variables: tuple[str, ...],
     distro: str,
+    group_by: str | None,
     form: str,
     project: Path | None,
     *,
@@ -106,9 +113,9 @@ def command(  # noqa: PLR0913, PLR0917 - one for each option
     else:
         _refuse_options(import_format, {"--env": variables})
     if import_format.takes_launch_files:
-        given |= {"launch_files": launch_files, "distro": distro}
+        given |= {"launch_files": launch_files, "distro": distro, "group_by": group_by}
     else:
-        _refuse_options(import_format, {"--launch": launch_files, "--distro": distro})
+        _refuse_options(import_format, {"--launch": launch_files, "--distro": distro, "--group-by": group_by})
     if import_format.has_requirements:
         from archgen.cli.requirement_import import import_requirements
 
@@ -232,7 +239,8 @@ def _import_slices(  # noqa: PLR0913, PLR0917 - what, where and how
         raise click.ClickException(make_visible(refusal.message)) from None
     _print_account(imported, plan, form)
     if mode == "write":
-        _write_plan(plan, quiet=form == "json")
+        # A recording says what was once: it does not change, the next one has another name.
+        _write_plan(plan, [] if import_format.has_dated_files else files, quiet=form == "json")
     _print_outcome(plan)
     if plan.errors or (mode == "check" and plan.is_out_of_date):
         raise click.exceptions.Exit(1)
@@ -326,23 +334,31 @@ def _summarise_slices(plan: ImportPlan) -> Iterator[str]:
         yield f"the model has {old_place} as {place} by now: it stays where it is"
 
 
-def _write_plan(plan: ImportPlan, *, quiet: bool) -> None:
+def _write_plan(plan: ImportPlan, sources: Sequence[Path], *, quiet: bool) -> None:
+    from archgen.edit.import_source import write_source_records
     from archgen.emit import new_files
     from archgen.emit.file_tree import replace_file
+    from archgen.regular_files import holds_bytes
 
     new = {plan.root / planned.file: planned.text.encode() for planned in plan.slices if planned.is_new}
     changed = [planned for planned in plan.slices if not planned.is_new and planned.is_changed]
     with command_support.explain_write_errors():
-        new_files.write_new_files(new, plan.root)
+        slices = [planned.file for planned in plan.slices if planned.records]
+        texts = {path: text for planned in plan.slices for path, text in planned.records.items()}
+        texts |= write_source_records(plan.root, slices, sources) if sources else {}
+        records = {plan.root / path: text.encode() for path, text in texts.items()}
+        for path in records:
+            new_files.refuse_outside(path.parent, plan.root)
+        # Of a slice that is new before it: while the slice is not there, the next run does all of it again.
+        first = {path: data for path, data in records.items() if new and not os.path.lexists(path)}
+        new_files.write_new_files(first | new, plan.root)
         for planned in changed:
             replace_file(plan.root / planned.file, planned.text.encode())
-        # Last: where something fails before, the next import knows what the one before it said.
-        for path, text in (
-            (plan.root / path, text) for planned in plan.slices for path, text in planned.records.items()
-        ):
-            if not path.is_file() or path.read_text(encoding="utf-8", errors="replace") != text:
+        # Of others last: where something fails before, the next import knows what the one before it said.
+        for path, data in records.items():
+            if not holds_bytes(path, data):
                 path.parent.mkdir(parents=True, exist_ok=True)
-                replace_file(path, text.encode())
+                replace_file(path, data)
     for path in () if quiet else (*new, *(plan.root / planned.file for planned in changed)):
         command_support.print_written(path)
 

@@ -65,6 +65,7 @@ if TYPE_CHECKING:
     is_flag=True,
     help="Let git merge slices by what they say, in this clone; alone, also in a project that is there already.",
 )
+@click.option("--empty", is_flag=True, help="Write the groups that are named without components, and no example.")
 @click.option("-y", "--yes", is_flag=True, help="Ask nothing: take the defaults for what no flag says.")
 def command(  # noqa: PLR0913, PLR0917 - one for each option
     folder: Path | None,
@@ -77,6 +78,7 @@ def command(  # noqa: PLR0913, PLR0917 - one for each option
     headings: tuple[str, ...],
     *,
     merge_driver: bool,
+    empty: bool,
     yes: bool,
 ) -> None:
     """Start a project in FOLDER (the current one if left out): a small robot that checks clean, to be changed.
@@ -89,22 +91,41 @@ def command(  # noqa: PLR0913, PLR0917 - one for each option
     from archgen.start.start_answers import add_partners
 
     target = folder or Path()
-    if merge_driver and not any((title, partners, groups, distro, ci, tables, headings)) and _has_project(target):
+    if (
+        merge_driver
+        and not any((title, partners, groups, distro, ci, tables, headings, empty))
+        and _has_project(target)
+    ):
         _set_up_merge_driver(target)
         return
     _refuse_existing_project(target)
     if tables and groups:
         msg = "--from takes the groups from the table: leave out --group"
         raise click.UsageError(msg)
+    if tables and empty:
+        msg = "--from begins with what the table says: leave out --empty"
+        raise click.UsageError(msg)
     if headings and not tables:
         msg = "--map says what the headings of a table mean: it needs --from"
         raise click.UsageError(msg)
     heading_map = _parse_headings(headings)
     answers = _gather_answers(
-        target, title=title, partners=partners, groups=groups, distro=distro, forge=ci or "github"
+        target,
+        title=title,
+        partners=partners,
+        groups=groups,
+        distro=distro,
+        forge=ci or "github",
+        is_empty=empty,
     )
     # What a flag or the tables answer is not asked. The keys are those that `questions` knows.
-    flag_values = {"title": title, "partner": partners or tables, "group": groups or tables, "distro": distro, "ci": ci}
+    flag_values = {
+        "title": title,
+        "partner": partners or tables,
+        "group": groups or tables or empty,
+        "distro": distro,
+        "ci": ci,
+    }
     if not yes and sys.stdin.isatty() and sys.stdout.isatty():
         from archgen.cli import init_questions
 
@@ -271,6 +292,10 @@ def _print_outcome(target: Path, checked_project: CheckedProject, project_plan: 
         click.echo(
             "That CODEOWNERS does not name this project's files yet: add what `archgen owners --format codeowners` prints."
         )
+    if any(
+        path.parts[-3:-1] == (".github", "workflows") or path.name == ".gitlab-ci.yml" for path in project_plan.files
+    ):
+        click.echo("Its workflow names archgen where it is not published yet: README.md says what to write there.")
     if project_plan.reviewers_missing:
         click.echo(
             "No CODEOWNERS yet: give the partners `reviewers`, then archgen owners --format codeowners > CODEOWNERS"

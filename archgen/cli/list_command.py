@@ -97,17 +97,16 @@ def _list_elements(
     """Return the columns and rows of elements."""
     from archgen.products import project_views
     from archgen.products.output_options import OutputOptions
-    from archgen.views.tables import element_rows
 
+    # Who writes the kind where a selector stands means `--of`, unless an element is called so.
+    meant_kind = next((each for each in LISTABLE_KINDS if selector_text in {each, each.removesuffix("s")}), None)
+    if meant_kind and any(
+        p.severity == "error" for p in project_views.select_elements(checked_project, selector_text)[1]
+    ):
+        msg = f"nothing is called `{selector_text}`; did you mean `archgen list --of {meant_kind}`?"
+        raise click.UsageError(msg)
     selection = command_support.select_or_exit(checked_project, selector_text or None)
-    lookup = project_views.make_scoped_lookup(checked_project, OutputOptions(selection, selector_text))
-    if kind == "requirements" and checked_project.analysis is not None and lookup.chains_for_requirement:
-        from archgen.views.lookup import add_timing
-        from archgen.views.timing.timing_lookup import bound_chains
-
-        # Whether a requirement is met may hang on a chain's deadline.
-        lookup = add_timing(lookup, bound_chains(checked_project.analysis, checked_project.architecture))
-    return element_rows.list_element_rows(lookup, kind)
+    return project_views.list_rows(checked_project, OutputOptions(selection, selector_text), kind)
 
 
 def _list_backends(checked_project: CheckedProject) -> tuple[Sequence[str], Sequence[Sequence[str]]]:

@@ -32,7 +32,7 @@ def command(main_line: str, branches: tuple[str, ...], form: str, *, strict: boo
     """
     from archgen.git import GitError
     from archgen.merge.branch_merge import preview_merges
-    from archgen.products.merge_breaks import find_joint_breaks
+    from archgen.products.merge_breaks import BRANCH_JUDGES
     from archgen.project import ProjectNotFoundError
 
     folders = _list_folders(project, (main_line, *branches))
@@ -41,7 +41,7 @@ def command(main_line: str, branches: tuple[str, ...], form: str, *, strict: boo
         raise click.UsageError(msg)
     paths = [(project or Path()) / folder for folder in folders] if folders else [project]
     with command_support.explain_wrong_usage(GitError, ProjectNotFoundError):
-        merges_by_project = [list(preview_merges(path, main_line, branches, find_joint_breaks)) for path in paths]
+        merges_by_project = [list(preview_merges(path, main_line, branches, BRANCH_JUDGES)) for path in paths]
     if form == "json":
         from archgen.merge.merge_sentences import format_merges_json
 
@@ -80,6 +80,8 @@ def print_merge(main_line: str, branch_merge: BranchMerge, folder: str = "") -> 
     merged_names = " + ".join((main_line, *branch_merge.branches))
     prefix = f"{folder}: " if folder else ""
     click.echo(make_visible(f"{prefix}{merged_names}: {describe_merge(branch_merge, main_line)}"))
+    for sentence in branch_merge.followed:
+        click.echo(make_visible(f"  followed: {sentence}"))
     for conflict in branch_merge.conflicts:
         click.echo(make_visible(f"  {describe_conflict(conflict)}"))
     if branch_merge.findings and branch_merge.checked_project:

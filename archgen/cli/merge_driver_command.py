@@ -28,10 +28,13 @@ def command(base: Path, ours: Path, theirs: Path, name: str, marker_size: int) -
     from archgen.emit import file_tree
     from archgen.git import GitError
     from archgen.merge.file_merge import merge_contents
+    from archgen.regular_files import read_named_file
+    from archgen.syntax.project_files import MAX_BYTES
 
     with command_support.explain_write_errors():
         try:
-            merged = merge_contents(base.read_bytes(), ours.read_bytes(), theirs.read_bytes(), marker_size, name)
+            old, own, other = (read_named_file(file, MAX_BYTES) for file in (base, ours, theirs))
+            merged = merge_contents(old, own, other, marker_size, name)
         except (GitError, OSError) as error:
             click.echo(make_visible(f"archgen: {name or ours}: {error}"), err=True)
             sys.exit(2)

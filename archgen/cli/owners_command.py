@@ -25,7 +25,7 @@ _TEXT_WIDTH = 96
 @click.command("owners")
 @shared_options.project_argument
 @shared_options.variant_option
-@click.option("--format", "form", type=click.Choice(["text", "codeowners"]), default="text", show_default=True)
+@click.option("--format", "form", type=click.Choice(["text", "codeowners", "json"]), default="text", show_default=True)
 @shared_options.file_option("The file to write.  [default: the terminal]")
 @shared_options.keep_going_option
 def command(project: Path | None, form: str, output: Path | None, *, keep_going: bool) -> None:
@@ -45,9 +45,13 @@ def command(project: Path | None, form: str, output: Path | None, *, keep_going:
     else:
         checked_project = command_support.check_or_exit(project)
         command_support.print_findings_above(checked_project, lowest_severity=Severity.ERROR)
-        text = _format_ownership(
-            code_ownership.find_ownership(checked_project), find_width(sys.stdout) if output is None else None
-        )
+        ownership = code_ownership.find_ownership(checked_project)
+        if form == "json":
+            from archgen.emit.data.answers_json import format_ownership_json
+
+            text = format_ownership_json(ownership)
+        else:
+            text = _format_ownership(ownership, find_width(sys.stdout) if output is None else None)
     with command_support.explain_write_errors():
         command_support.write_output(text, output)
     command_support.exit_by_findings(checked_project)

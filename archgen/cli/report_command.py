@@ -10,8 +10,10 @@ import click
 from archgen.cli import command_support, shared_options
 
 if TYPE_CHECKING:
-    from archgen.views.pages.report_outline import DetailLevel
+    from archgen.views.pages.report_outline import DetailLevel, ReportDocument
 
+_FILE_NAMES = {"deliverable": "report", "data-sheets": "data_sheets", "workbook": "workbook", "full": "report"}
+_MAX_FULL_COMPONENTS = 300
 _FORMAT_BY_ENDING = {".docx": "docx", ".pdf": "pdf", ".xlsx": "xlsx"}
 
 
@@ -30,6 +32,12 @@ _FORMAT_BY_ENDING = {".docx": "docx", ".pdf": "pdf", ".xlsx": "xlsx"}
     type=click.Path(exists=True, dir_okay=False, path_type=Path),
     help="A .docx or .dotx whose styles, cover, headers, footers and paper size are taken.",
 )
+@click.option(
+    "--document",
+    type=click.Choice(["deliverable", "data-sheets", "workbook", "full"]),
+    help="What to write: the report to hand in, a page for each component, all lists (.xlsx), or everything in one.  [default: deliverable; workbook for .xlsx]",
+)
+@click.option("--since", metavar="REV", help="Say what changed since a version (as `archgen diff` takes it).")
 @shared_options.select_option
 @click.option(
     "--level",
@@ -45,6 +53,8 @@ def command(  # noqa: PLR0913 - one for each option
     output: Path | None,
     form: str | None,
     template: Path | None,
+    document: ReportDocument | None,
+    since: str | None,
     select: str | None,
     level: DetailLevel | None,
     revision: str | None,
@@ -53,20 +63,33 @@ def command(  # noqa: PLR0913 - one for each option
 ) -> None:
     """Write the architecture of PROJECT as a Word document that can be handed in.
 
-    `--format pdf` takes LibreOffice, `--format xlsx` writes all tables as a workbook (with the library XlsxWriter).
+    `--document data-sheets` writes a page for each component, `workbook` all lists as .xlsx (with the library XlsxWriter),
+    `full` all of it in one document. `--format pdf` takes LibreOffice.
     """
     from archgen.frozen import replace
     from archgen.products import project_outputs
 
-    form = command_support.choose_format(form, output, _FORMAT_BY_ENDING, "docx")
+    form = command_support.choose_format(form, output, _FORMAT_BY_ENDING, "xlsx" if document == "workbook" else "docx")
+    document = document or ("workbook" if form == "xlsx" else "deliverable")
+    if (form == "xlsx") != (document == "workbook"):
+        msg = "the workbook is an .xlsx, and of the other documents there is none: `--document workbook` goes with `--format xlsx` alone"
+        raise click.UsageError(msg)
     if template is not None and form == "xlsx":
         msg = "a workbook takes no template: `--template` goes with docx and pdf"
         raise click.UsageError(msg)
     checked_project = command_support.check_before_writing(project, keep_going=keep_going)
     output_options = replace(
-        command_support.make_drawing_options(checked_project, select, level, revision), show_history=history
+        command_support.make_drawing_options(checked_project, select, level, revision),
+        show_history=history,
+        document=document,
+        changes=command_support.compare_since(since, project, checked_project),
     )
-    target = output or checked_project.output_folder / f"report.{form}"
+    components = len(checked_project.architecture.components)
+    if document == "full" and select is None and components > _MAX_FULL_COMPONENTS:
+        command_support.print_warning(
+            f"everything on {components} components fills some {3 * components:,} pages, which few programs open: `--document deliverable` has what is read, `--select` makes a part"
+        )
+    target = output or checked_project.output_folder / f"{_FILE_NAMES[document]}.{form}"
     with command_support.explain_write_errors():
         if form == "xlsx":
             project_outputs.write_report_workbook(checked_project, output_options, target)

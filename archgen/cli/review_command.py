@@ -101,7 +101,9 @@ def command(  # noqa: PLR0913 - one for each option
     try:
         with _explain_in_comment(target, base):
             merge_target = _find_merge_target(project, base)
-            trusted_revision = command_support.find_trusted_revision(project, merge_target)
+            trusted_revision = (
+                command_support.find_trusted_revision(project, merge_target, version_cache) if build else None
+            )
             change = (
                 _compare_change(checked_project, project, merge_target, target, version_cache) if merge_target else None
             )

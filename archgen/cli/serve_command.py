@@ -30,6 +30,7 @@ DEFAULT_PORT = 8470
     show_default=True,
     help="The port to listen at; 0 takes one that is free.",
 )
+@click.option("--embed", "in_editor", is_flag=True, help="Let Visual Studio Code show it in a frame.")
 @click.option("--open", "opens", is_flag=True, help="Open the start page in the browser.")
 @shared_options.select_option
 @shared_options.variant_option
@@ -44,6 +45,7 @@ def command(  # noqa: PLR0913 - one for each option
     project: Path | None,
     host: str,
     port: int,
+    in_editor: bool,
     opens: bool,
     select: str | None,
     level: DetailLevel | None,
@@ -61,21 +63,21 @@ def command(  # noqa: PLR0913 - one for each option
     options = OutputOptions(selector_text=select or "", level=level, warn=command_support.print_warning)
     with command_support.explain_wrong_usage(ProjectNotFoundError):
         live_site = LiveSite(project, options, since, shared_options.find_asked_variants())
-    server = _open_port(live_site, host, port)
+    server = _open_port(live_site, host, port, in_editor=in_editor)
     try:
         _serve(live_site, server, opens=opens)
     except KeyboardInterrupt:
         click.echo("\nstopped", err=True)
 
 
-def _open_port(live_site: LiveSite, host: str, port: int) -> SiteServer:
+def _open_port(live_site: LiveSite, host: str, port: int, *, in_editor: bool) -> SiteServer:
     """Take the port. Raise ClickException where that cannot be."""
     import errno
 
     from archgen.serve.site_server import SiteServer
 
     try:
-        return SiteServer(live_site, host, port)
+        return SiteServer(live_site, host, port, in_editor=in_editor)
     except OSError as error:
         if error.errno == errno.EADDRINUSE:
             msg = f"port {port} of {host} is taken; `--port 0` takes a free one"
@@ -88,7 +90,7 @@ def _serve(live_site: LiveSite, server: SiteServer, *, opens: bool) -> None:
     """Serve until somebody interrupts."""
     import webbrowser
 
-    from archgen.serve.file_watch import watch_files
+    from archgen.live.file_watch import watch_files
 
     # A shell that starts something in the background has it ignore interrupts: who sends one all the same means it.
     signal.signal(signal.SIGINT, signal.default_int_handler)

@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 import functools
+import os
 from collections.abc import Callable
 from pathlib import Path
-from typing import Any
+from typing import Any, NoReturn
 
 import click
 from click.core import ParameterSource
@@ -31,7 +32,7 @@ def project_argument(function: CommandFunction, envvar: str | None = None) -> Co
             project = None
         if project is not None and named_project is not None:
             msg = f"the project is named twice: {project} and -C {named_project}"
-            if not project.exists():
+            if not os.path.exists(project):  # noqa: PTH110 - Path.exists raises for a name that is too long
                 msg = f"{project} is no folder: what stands here is the project, which -C names already"
                 options = {"--why", "--select"} & {option for each in context.command.params for option in each.opts}
                 msg += f"; elements are named behind {' or '.join(sorted(options))}" if options else ""
@@ -147,16 +148,22 @@ def complete_backends(makes: str) -> Callable[[click.Context, click.Parameter, s
     ]
 
 
-def backend_argument(makes: str) -> Callable[[CommandFunction], CommandFunction]:
-    """Take the name of a backend that makes this; without one, say which there are."""
+def backend_argument(makes: str, *, required: bool = True) -> Callable[[CommandFunction], CommandFunction]:
+    """Take the name of a backend that makes this; without one that is required, say which there are."""
 
-    def ask(_context: click.Context, _parameter: click.Parameter, name: str | None) -> str:
-        if name is None:
-            msg = f"name what to make: {', '.join(sorted(_list_backend_ids(makes)))}; `archgen list --of backends` says what each is"
-            raise click.UsageError(msg)
+    def ask(_context: click.Context, _parameter: click.Parameter, name: str | None) -> str | None:
+        if name is None and required:
+            refuse_missing_backend(makes)
         return name
 
     return click.argument("name", required=False, callback=ask, shell_complete=complete_backends(makes))
+
+
+def refuse_missing_backend(makes: str, advice: str = "") -> NoReturn:
+    """Say which backends there are, since nobody names one."""
+    names = ", ".join(sorted(_list_backend_ids(makes)))
+    msg = f"name what to make: {names}; `archgen list --of backends` says what each is{advice}"
+    raise click.UsageError(msg)
 
 
 def complete_products(_context: click.Context, _parameter: click.Parameter, incomplete: str) -> list[str]:
@@ -166,6 +173,28 @@ def complete_products(_context: click.Context, _parameter: click.Parameter, inco
     head, comma, last_name = incomplete.rpartition(",")
     names = (*PRODUCTS, *_list_backend_ids("documents"))
     return [f"{head}{comma}{name}" for name in names if name.startswith(last_name)]
+
+
+def _complete_partners(_context: click.Context, _parameter: click.Parameter, incomplete: str) -> list[str]:
+    """Complete a partner of the project around the current folder."""
+    from archgen import pipeline
+    from archgen.project.project_search import ProjectNotFoundError
+
+    try:
+        partners = pipeline.check_project(None).architecture.partners
+    except ProjectNotFoundError:
+        return []
+    return [name for name in partners if name.startswith(incomplete)]
+
+
+def partner_option(help_text: str, *, required: bool = False) -> Callable[[CommandFunction], CommandFunction]:
+    """Make the option of a verb that is about a partner."""
+    return click.option("--partner", metavar="ID", required=required, shell_complete=_complete_partners, help=help_text)
+
+
+document_format_option = click.option(
+    "--format", "form", type=click.Choice(["text", "markdown", "json"]), default="text", show_default=True
+)
 
 
 def file_option(help_text: str) -> Callable[[CommandFunction], CommandFunction]:

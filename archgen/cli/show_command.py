@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import sys
 import textwrap
 from pathlib import Path
@@ -22,9 +23,10 @@ _TEXT_WIDTH = 96
 
 @click.command("show")
 @click.argument("words", nargs=-1, required=True)
+@click.option("--format", "form", type=click.Choice(["text", "json"]), default="text", show_default=True)
 @shared_options.project_option
 @shared_options.variant_option
-def command(words: tuple[str, ...], project: Path | None) -> None:
+def command(words: tuple[str, ...], form: str, project: Path | None) -> None:
     """Show each element that WORDS name: ports, readers, nodes, place in the files.
 
     A word is an id (`object_recognition`, `sensing.rgbd_camera.rgbd`, `/camera/rgbd`, `R-12`), the end of one, or a
@@ -45,14 +47,30 @@ def command(words: tuple[str, ...], project: Path | None) -> None:
 
         lookup = add_timing(lookup, complete_with_chains(checked_project.analysis, checked_project.architecture))
     unknown_words = []
+    cards: list[ElementCard] = []
     for word in words:
         matches = element_names.find_elements(lookup, word)
-        for kind, name in matches:
-            click.echo(format_card(element_card.make_card(lookup, kind, name), find_width(sys.stdout)))
+        cards += [element_card.make_card(lookup, kind, name) for kind, name in matches]
         if not matches:
             unknown_words.append(unknown_name_text(word, element_names.kinds_by_id(lookup)))
+    if form == "json":
+        click.echo(json.dumps([_card_to_data(card) for card in cards], ensure_ascii=False, indent=2))
+    for card in cards if form == "text" else ():
+        click.echo(format_card(card, find_width(sys.stdout)))
     if unknown_words:
         raise click.UsageError(make_visible("\n".join(unknown_words)))
+
+
+def _card_to_data(card: ElementCard) -> dict[str, object]:
+    place = {"file": card.span.file, "line": card.span.line, "column": card.span.column} if card.span.file else None
+    return {
+        "kind": card.kind,
+        "id": card.id,
+        "title": card.title,
+        "place": place,
+        "facts": dict(card.facts),
+        "lists": {name: list(items) for name, items in card.lists},
+    }
 
 
 def format_card(card: ElementCard, width: int | None = None) -> str:

@@ -82,6 +82,7 @@ def command(  # noqa: PLR0913, PLR0917 - one for each option
             seeds if seed is None else range(seed, seed + 1),
             waypoints,
             analysis_bounds.find_publish_pauses(analysis),
+            progress=command_support.make_progress_printer("simulated runs"),
         )
     except EventFloodError as flood:
         raise click.ClickException(_describe_flood(flood.gave_up_at)) from None

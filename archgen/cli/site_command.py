@@ -45,17 +45,11 @@ def command(  # noqa: PLR0913 - one for each option
     from archgen.products import project_outputs
 
     checked_project = command_support.check_before_writing(project, keep_going=keep_going)
-    changes = None
-    if since is not None:
-        from archgen.products.comparison_documents import compare_since
-
-        with command_support.explain_missing_versions():
-            changes = compare_since(since, project, checked_project)
     output_options = replace(
         command_support.make_drawing_options(checked_project, select, level, revision),
         show_history=history,
         component_pictures=component_pictures,
-        changes=changes,
+        changes=command_support.compare_since(since, project, checked_project),
     )
     target = output or checked_project.output_folder / "site"
     with command_support.explain_write_errors():

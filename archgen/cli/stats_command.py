@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import os
 import sys
+from collections.abc import Iterable
 from dataclasses import asdict
 from fractions import Fraction
 from pathlib import Path
@@ -19,6 +21,9 @@ from archgen.diagnostics.text_columns import find_width, format_table, wrap_line
 if TYPE_CHECKING:
     from archgen.analyses.size_counts import ArchitectureSize, ProgressCounts
     from archgen.history import HistoryInterval
+
+_NARROW = 100
+"""In fewer columns the table of progress has shares alone, so that 80 hold it."""
 
 
 @click.command("stats")
@@ -38,7 +43,8 @@ def command(project: Path | None, select: str | None, form: str, by: HistoryInte
     """Show how large PROJECT is and how far along: as a whole, for each group and for each partner.
 
     Described: it has a functionality. Typed: each output has a type. Mapped: a node that somebody wrote implements it.
-    Timed: it or all its nodes have a timing. Traced: it names a declared requirement.
+    Timed: it or all its nodes have a timing. Traced: it names a declared requirement. Seen: each of its ends was seen on a
+    robot (`archgen conform --keep`).
 
     With --history: the same at each revision that changed the project, along the first parents of git's HEAD.
     """
@@ -56,12 +62,17 @@ def command(project: Path | None, select: str | None, form: str, by: HistoryInte
 
 def _print_current(project: Path | None, form: str, select: str | None) -> None:
     from archgen.analyses.size_counts import measure_progress, measure_size
+    from archgen.products.seen_robots import find_seen_components, read_seen_robots
 
     checked_project = command_support.check_or_exit(project)
     command_support.print_findings_above(checked_project, lowest_severity=Severity.ERROR)
     selection = command_support.select_or_exit(checked_project, select)
     project_size = measure_size(checked_project.architecture)
-    rows = measure_progress(checked_project.architecture, selection.components if selection else None)
+    _, obstacle = read_seen_robots(checked_project)
+    if obstacle:
+        command_support.print_warning(obstacle)
+    seen = find_seen_components(checked_project)
+    rows = measure_progress(checked_project.architecture, selection.components if selection else None, seen)
     if selection:
         # How large a project is says nothing of a part: only how far that is.
         rows = tuple(row for row in rows if row.components)
@@ -75,15 +86,13 @@ def _print_current(project: Path | None, form: str, select: str | None) -> None:
         }
         click.echo(format_json(data), nl=False)
     else:
-        click.echo(
-            _format_statistics(
-                checked_project.architecture.project.title,
-                None if selection else project_size,
-                rows,
-                len(checked_project.yaml_files),
-            ),
-            nl=False,
+        lines = _format_statistics(
+            checked_project.architecture.project.title,
+            None if selection else project_size,
+            rows,
+            len(checked_project.yaml_files),
         )
+        click.echo("\n".join(_paint(lines)))
     command_support.exit_by_findings(checked_project)
 
 
@@ -108,13 +117,14 @@ def _print_history(project: Path | None, form: str, by: HistoryInterval) -> None
     elif form == "csv":
         click.echo(history_text.history_to_csv(project_history), nl=False)
     else:
-        click.echo(history_text.format_history(project_history, find_width(sys.stdout)), nl=False)
+        lines = history_text.format_history(project_history, find_width(sys.stdout)).splitlines()
+        click.echo("\n".join(_paint(lines)))
 
 
 def _format_statistics(
     title: str, project_size: ArchitectureSize | None, rows: tuple[ProgressCounts, ...], files: int
-) -> str:
-    from archgen.views.tables.statistics_tables import PROGRESS_STEPS, format_figures
+) -> Iterable[str]:
+    from archgen.views.tables.statistics_tables import format_figures, list_steps
 
     width = find_width(sys.stdout)
     lines = [*wrap_line(make_visible(title), width), ""]
@@ -122,21 +132,32 @@ def _format_statistics(
         figures = [*((label, value) for _, label, value in format_figures(project_size)), ("Files", str(files))]
         lines += [line for label, value in figures for line in wrap_line(f"  {label:42}{value:>8}", width)]
         lines.append("")
+    steps = list_steps(rows)
+    is_narrow = width is not None and width < _NARROW
     populated_rows = [
         (
             row.title,
             str(row.components),
-            *(_format_share(getattr(row, step), row.components) for step in PROGRESS_STEPS),
+            *(_format_share(getattr(row, step), row.components, is_short=is_narrow) for step in steps),
         )
         for row in rows
         if row.components
     ]
     if populated_rows:
-        headings = ("Components", "total", *PROGRESS_STEPS)  # narrow: 80 columns hold the table
+        headings = ("Components", "total", *steps)
         table_lines = format_table(headings, populated_rows, width and width - 2, has_figures=True)
         lines += [f"  {line}" for line in table_lines]
-    return "\n".join(map(defuse_command, lines)) + "\n"
+    return map(defuse_command, lines)
 
 
-def _format_share(count: int, total: int) -> str:
-    return f"{count} ({floor_percent(count, total)}%)"
+def _paint(lines: Iterable[str]) -> Iterable[str]:
+    """Return the lines, on a terminal that shows colours with those of the site."""
+    from archgen.emit.terminal.findings_text import wants_colour
+    from archgen.emit.terminal.state_paint import paint_progress
+
+    return paint_progress(lines) if wants_colour(sys.stdout, os.environ) else lines
+
+
+def _format_share(count: int, total: int, *, is_short: bool) -> str:
+    share = f"{floor_percent(count, total)}%"
+    return share if is_short else f"{count} ({share})"

@@ -32,6 +32,7 @@ ANY_PROPOSAL = "any"
 @shared_options.project_argument
 @shared_options.variant_option
 @click.option("--format", "form", type=click.Choice(["text", "json"]), default="text", show_default=True)
+@click.option("--all", "shows_all", is_flag=True, help="Show services, elements and loops on a terminal, too.")
 @click.option("--chain", metavar="ID", help="Show a chain term by term.")
 @click.option(
     "--why", metavar="ID", help="Show the reasoning behind the figures of an element, topic, chain, host, link."
@@ -100,6 +101,7 @@ def command(  # noqa: PLR0913, PLR0917 - one for each option
     propose: str | None,
     *,
     applies: bool,
+    shows_all: bool,
 ) -> None:
     """Show how often everything in PROJECT works, how long its chains take, and what hosts and links carry.
 
@@ -122,7 +124,7 @@ def command(  # noqa: PLR0913, PLR0917 - one for each option
 
     command_support.print_findings_above(checked_project, lowest_severity=Severity.ERROR)
     request = TimingRequest(
-        checked_project, _apply_overrides(checked_project.architecture, written), form == "json", written
+        checked_project, _apply_overrides(checked_project.architecture, written), form == "json", written, shows_all
     )
     if chain is not None:
         print_chain(request, chain)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import sys
 from collections.abc import Iterable
 from typing import TYPE_CHECKING, NoReturn
@@ -31,6 +32,8 @@ class TimingRequest:
     """The architecture with the figures of `--set`."""
     as_json: bool
     overrides: tuple[str, ...] = ()
+    shows_all: bool = False
+    """Whether a terminal shows all of the summary, too."""
 
 
 def print_timing_summary(request: TimingRequest) -> None:
@@ -48,7 +51,9 @@ def print_timing_summary(request: TimingRequest) -> None:
             _print_json(timing_json.timing_to_json(analysis, chains, proposal))
         else:
             loops = find_loop_rounds(CostNetwork.of_analysis(analysis))
-            _print_lines(timing_text.format_timing(analysis, chains, loops, find_width(sys.stdout), proposal))
+            is_short = sys.stdout.isatty() and not request.shows_all
+            width = find_width(sys.stdout)
+            _print_lines(timing_text.format_timing(analysis, chains, loops, width, proposal, is_short=is_short))
         return
     changed = _analyse_chains(request.architecture)
     if request.as_json:
@@ -146,8 +151,8 @@ def print_sensitivity(request: TimingRequest, chain_id: str) -> None:
 def print_budget(request: TimingRequest, chain_id: str) -> None:
     """Print how long what a chain rests on may take until it misses its deadline (`--budget`)."""
     from archgen.emit.terminal import chain_text
-    from archgen.emit.terminal.chain_gaps import describe_gaps
     from archgen.link.timing_overrides import apply_overrides
+    from archgen.timing.chains.missing_figures import describe_gaps
     from archgen.timing.search.chain_budgets import MAX_TRIES, UnknownBudgetError, find_chain_budget
     from archgen.timing.search.change_trials import ChangeTrials
 
@@ -250,6 +255,10 @@ def _print_json(document: object) -> None:
 
 
 def _print_lines(lines: Iterable[str]) -> None:
+    from archgen.emit.terminal.findings_text import wants_colour
+    from archgen.emit.terminal.state_paint import paint_states
+
     width = find_width(sys.stdout)
-    for line in lines:
-        click.echo("\n".join(wrap_line(make_visible(line), width)))
+    wrapped = (part for line in lines for part in wrap_line(make_visible(line), width))
+    for line in paint_states(wrapped) if wants_colour(sys.stdout, os.environ) else wrapped:
+        click.echo(line)

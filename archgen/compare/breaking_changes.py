@@ -17,18 +17,17 @@ from archgen.compare.losses.changed_definitions import (
 )
 from archgen.compare.losses.changed_meanings import find_changed_frames, find_changed_meanings
 from archgen.compare.losses.changed_parameters import find_changed_parameters
-from archgen.compare.losses.cut_steps import find_cut_steps
 from archgen.compare.losses.fallen_figures import find_fallen_limits, find_overloaded_cores, find_saturated_links
 from archgen.compare.losses.foreign_edits import find_foreign_edits
 from archgen.compare.losses.lost_connections import (
+    find_cut_steps,
     find_lost_connections,
     find_redirected_connections,
     find_renamed_sources,
     find_unmade_connections,
 )
 from archgen.compare.losses.missed_deadlines import find_chains_made_late, find_weakened_deadlines
-from archgen.compare.losses.parted_ends import find_parted_ends
-from archgen.compare.losses.renamed_topics import find_renamed_topics
+from archgen.compare.losses.parted_ends import find_parted_ends, find_renamed_topics
 from archgen.compare.losses.separated_causes import CauseSeparator
 from archgen.compare.losses.timing_causes import TimingCauses
 from archgen.compare.losses.weakened_demands import (
@@ -38,7 +37,7 @@ from archgen.compare.losses.weakened_demands import (
 )
 from archgen.compare.losses.weakened_outputs import find_weakened_outputs, find_weakened_sizes
 from archgen.compare.losses.weakened_words import find_weakened_words
-from archgen.compare.timing_pair import TimingPair
+from archgen.compare.timing_pair import TimingPair, is_rewording
 from archgen.diagnostics.diagnostic import Severity
 from archgen.frozen import replace
 from archgen.model.review_settings import AcceptedChange, BreakPolicy, ReviewSettings
@@ -66,6 +65,8 @@ _LOSS_FINDERS = (
     find_renamed_sources,
     find_foreign_edits,
 )
+_WORD_LOSS_FINDERS = (find_rewritten_requirements, find_changed_meanings, find_foreign_edits)
+"""Those of them that titles and texts alone may concern."""
 
 
 def stricter_policy(old_review: ReviewSettings, new_review: ReviewSettings) -> BreakPolicy:
@@ -125,7 +126,7 @@ def _find_losses(
     limits: Sequence[LimitChange],
     timing_pair: TimingPair | None,
 ) -> Iterator[PartnerLoss]:
-    for find_losses in _LOSS_FINDERS:
+    for find_losses in _WORD_LOSS_FINDERS if all(map(is_rewording, context.changes)) else _LOSS_FINDERS:
         yield from find_losses(context)
     if timing_pair:
         causes = TimingCauses(context, timing_pair)

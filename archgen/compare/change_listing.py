@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections import defaultdict
 from collections.abc import Mapping
 
-from archgen.compare import change_sentences, changed_keys, connection_sentences, element_sentences
+from archgen.compare import change_sentences, changed_keys, element_sentences
 from archgen.compare.architecture_version import ArchitectureVersion
 from archgen.compare.comparison import Change
 from archgen.compare.connection_maps import ConnectionMap, RewiredInput, find_rewired_inputs, map_connections
@@ -118,7 +118,7 @@ class DifferenceFinder:
         return f"{self.matched_ids.common_id('group', group)}{dot}{path}"
 
     def _add_changed_keys(self, old_element: ComparedElement, new_element: ComparedElement) -> None:
-        if old_element.values == new_element.values:
+        if old_element is new_element or old_element.values == new_element.values:
             return
         for key, before, after in changed_keys.list_changed_keys(
             old_element, new_element, self.elements_before, self.elements_after
@@ -198,7 +198,7 @@ class DifferenceFinder:
                 self._old_input_id(rewired_input.input_id) if change_kind == "removed" else rewired_input.input_id
             )
             change = Change(change_kind, "connection", input_id, before=self._old_output_ids(before), after=after)  # type: ignore[arg-type]
-            change = replace(change, text=connection_sentences.describe_connection(rewired_input, self.versions))
+            change = replace(change, text=change_sentences.describe_connection(rewired_input, self.versions))
             (self.attached_changes[cause_key] if cause_key else self.top_changes).append(change)
 
     def _may_be_unread(self, rewired_input: RewiredInput) -> bool:
@@ -209,16 +209,10 @@ class DifferenceFinder:
                 return True
         if not (lost_before or lost_after):
             return False
-        lost_words = {
-            part
-            for output in rewired_input.lost_sources
-            for part in (*output.split("."), *rewired_input.input_id.split("."))
-        }
-        gained_words = {
-            part
-            for output in rewired_input.gained_sources
-            for part in (*output.split("."), *rewired_input.input_id.split("."))
-        }
+        lost_words, gained_words = (
+            {part for name in (*sources, rewired_input.input_id) for part in name.split(".") if sources}
+            for sources in (rewired_input.lost_sources, rewired_input.gained_sources)
+        )
         return not (lost_after.isdisjoint(lost_words) and lost_before.isdisjoint(gained_words))
 
     def _find_cause(self, rewired_input: RewiredInput) -> ElementKey | None:
@@ -269,10 +263,8 @@ def find_changes(
 ) -> tuple[VersionPair, tuple[Change, ...]]:
     """Return two versions in normal form, and every difference between them."""
     elements = list_elements(before, after, matched_ids)
-    old_connections, new_connections = (
-        map_connections(before.architecture, matched_ids),
-        map_connections(after.architecture, MatchedIds()),
-    )
+    old_connections = map_connections(before.architecture, matched_ids)
+    new_connections = map_connections(after.architecture, MatchedIds())
     lost_keys = before.architecture.unread_keys, after.architecture.unread_keys
     version_pair = VersionPair(
         old_connections,

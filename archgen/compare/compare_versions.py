@@ -17,7 +17,7 @@ from archgen.compare.match_elements import match_elements
 from archgen.compare.matched_ids import MatchedIds
 from archgen.compare.review_facts import ReviewFacts
 from archgen.compare.timing_changes import add_chain_causes, compare_chains, find_link_users, find_load_changes
-from archgen.compare.timing_pair import analyse_timing_pair
+from archgen.compare.timing_pair import analyse_timing_pair, is_rewording
 from archgen.compare.type_edits import trace_origins
 from archgen.diagnostics.diagnostic import Diagnostic, Severity
 from archgen.diagnostics.finding_identity import identify_finding, match_findings
@@ -61,7 +61,7 @@ def compare_versions(
         idle_acceptances = find_idle_acceptances(changes, after.architecture.review)
     boundaries: tuple[BoundaryChange, ...] = ()
     loads: tuple[LoadChange, ...] = ()
-    if changes:
+    if not all(map(is_rewording, changes)):
         boundaries = find_boundary_changes(before, after, matched_ids, timing_pair, version_pair)
         loads = find_load_changes(after.architecture, matched_ids, timing_pair)
     return Comparison(

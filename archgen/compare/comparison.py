@@ -14,7 +14,7 @@ from archgen.model.node import Qos
 from archgen.model.quantity import Quantity
 from archgen.model.review_settings import BREAK_CATEGORIES, AcceptedChange, BreakCategory, BreakPolicy
 from archgen.timing.analysis import ChainResult
-from archgen.timing.chains.limit_states import LimitState
+from archgen.timing.chains.chain_verdicts import LimitState
 from archgen.timing.figures.timing_values import TimingValue
 
 BoundaryKind = Literal["added", "removed", "changed"]

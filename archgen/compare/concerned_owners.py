@@ -45,6 +45,9 @@ def _find_affected(
     if change.element_kind == "link" and versions.link_users is not None:
         # Most of those on the hosts that a link connects send nothing over it.
         yield from () if _is_textual(change) else versions.link_users.get(change.element_id, ())
+        for elements in versions.elements:
+            element = _find_element(change, elements, elements_by_own_id)
+            yield from _list_owners(element, elements) if element else ()
         return
     if change.element_kind == "policy":
         yield from () if _is_textual(change) else versions.policy_partners.get(change.element_id, ())

@@ -75,9 +75,7 @@ def find_rewired_inputs(old_map: ConnectionMap, new_map: ConnectionMap) -> Itera
     """Yield the inputs whose sources changed, sorted by id."""
     no_sources = frozenset[str]()
     for input_id in sorted(old_map.sources_by_input.keys() | new_map.sources_by_input.keys()):
-        old_sources, new_sources = (
-            old_map.sources_by_input.get(input_id, no_sources),
-            new_map.sources_by_input.get(input_id, no_sources),
-        )
+        old_sources = old_map.sources_by_input.get(input_id, no_sources)
+        new_sources = new_map.sources_by_input.get(input_id, no_sources)
         if old_sources != new_sources:
             yield RewiredInput(input_id, old_sources, new_sources)

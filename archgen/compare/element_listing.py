@@ -5,7 +5,7 @@ The first version is listed under the ids of the second, so that whatever merely
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 
 from archgen.compare.architecture_version import ArchitectureVersion
 from archgen.compare.kinds import ELEMENT_KINDS
@@ -13,7 +13,7 @@ from archgen.compare.kinds.key_spec import ReadContext, key_values
 from archgen.compare.kinds.kind_spec import KindSpec
 from archgen.compare.kinds.ros_kinds import NODE, PORT, NodePort
 from archgen.compare.matched_ids import MatchedIds
-from archgen.compare.normal_values import drop_unset_values, last_part
+from archgen.compare.normal_values import last_part
 from archgen.compare.version_pair import ComparedElement, ElementKey
 from archgen.diagnostics.source_span import NO_SPAN
 from archgen.model.architecture import Architecture
@@ -32,26 +32,40 @@ def list_elements(
     split_components = frozenset(
         new_id for old_id, new_id in matched_components.items() if (old_id in single_before) != (new_id in single_after)
     )
-    return (
-        _list_version_elements(ReadContext(before, matched_ids, split_components)),
-        _list_version_elements(ReadContext(after, MatchedIds(), split_components)),
-    )
+    before_context = ReadContext(before, matched_ids, split_components)
+    after_context = ReadContext(after, MatchedIds(), split_components)
+    elements_after = _list_version_elements(after_context)
+    # With other ids an element that is the same refers to others.
+    listed = None if matched_ids.has_renames else (after_context, elements_after)
+    return _list_version_elements(before_context, listed), elements_after
 
 
-def _list_version_elements(context: ReadContext) -> dict[ElementKey, ComparedElement]:
+_ListedVersion = tuple[ReadContext, Mapping[ElementKey, ComparedElement]]
+
+
+def _list_version_elements(
+    context: ReadContext, other_version: _ListedVersion | None = None
+) -> dict[ElementKey, ComparedElement]:
     # Values hold no spans: elements that move between files have not changed.
-    listed = (element for kind in ELEMENT_KINDS.values() for element in _list_kind(kind, context))
+    listed = (element for kind in ELEMENT_KINDS.values() for element in _list_kind(kind, context, other_version))
     return {(element.kind, element.id): element for element in (*listed, *_list_node_ports(context))}
 
 
-def _list_kind(kind: KindSpec, context: ReadContext) -> Iterator[ComparedElement]:
-    keys = kind.keys
+def _list_kind(kind: KindSpec, context: ReadContext, other_version: _ListedVersion | None) -> Iterator[ComparedElement]:
+    """Yield the elements of a kind; those of which the other version has the very same, as they are listed there."""
+    keys, surroundings = kind.keys, kind.surroundings
+    other_context, other_listed = other_version or (context, {})
+    other_elements = kind.elements(other_context.version) if kind.elements and other_version else {}
     for own_id, element in kind.elements(context.version).items() if kind.elements else ():
+        is_same = element is other_elements.get(own_id)
+        if is_same and surroundings and surroundings(element, context) == surroundings(element, other_context):
+            yield other_listed[kind.name, own_id]
+            continue
         yield ComparedElement(
             kind.name,
             context.matched_ids.common_id(kind.name, own_id),
             own_id,
-            drop_unset_values(key_values(keys, element, context)),
+            key_values(keys, element, context),
             kind.parent(element, context),
             kind.owner(element, context),
             kind.is_declared(element),
@@ -74,7 +88,7 @@ def _list_node_ports(context: ReadContext) -> Iterator[ComparedElement]:
             is_stated = use.internal or not (
                 use.port is not None and use.port.rpartition(".")[0] in context.told_components
             )
-            values = drop_unset_values(key_values(port_keys, NodePort(use, node, is_stated), context))
+            values = key_values(port_keys, NodePort(use, node, is_stated), context)
             if values:
                 key, own_key = _port_ids(use, node, context.matched_ids)
                 yield ComparedElement(

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from functools import cached_property
 
 from archgen.model.architecture import Architecture
-from archgen.model.component import list_component_ports
+from archgen.model.component import Component, Group, list_component_ports
 
 
 def project_messages(architecture: Architecture) -> list[str]:
@@ -41,43 +41,32 @@ class ElementRelations:
     @cached_property
     def readers_by_output(self) -> Mapping[str, list[str]]:
         """Return for each output the inputs that read it."""
-        reader_ids: dict[str, list[str]] = defaultdict(list)
-        for edge in self.architecture.edges:
-            reader_ids[edge.output].append(edge.input)
-        # A defaultdict is returned on purpose: what nobody uses has an empty list.
-        return reader_ids
+        return _collect_by_first((edge.output, edge.input) for edge in self.architecture.edges)
 
     @cached_property
     def outputs_by_input(self) -> Mapping[str, list[str]]:
         """Return for each input the outputs that it reads."""
-        output_ids: dict[str, list[str]] = defaultdict(list)
-        for edge in self.architecture.edges:
-            output_ids[edge.input].append(edge.output)
-        return output_ids
+        return _collect_by_first((edge.input, edge.output) for edge in self.architecture.edges)
 
     @cached_property
     def nodes_by_place(self) -> Mapping[str, list[str]]:
         """Return the written nodes of components (`component:ID`), hosts (`host:ID`) and containers."""
-        nodes: dict[str, list[str]] = defaultdict(list)
-        for node in self.architecture.nodes.values():
-            if node.written:
-                for place in (
-                    *(f"component:{component_id}" for component_id in node.implements),
-                    f"host:{node.host}",
-                    f"container:{node.container}",
-                ):
-                    nodes[place].append(node.id)
-        return nodes
+        return _collect_by_first(
+            (place, node.id)
+            for node in self.architecture.nodes.values()
+            if node.written
+            for place in (
+                *(f"component:{each}" for each in node.implements),
+                f"host:{node.host}",
+                f"container:{node.container}",
+            )
+        )
 
     @cached_property
     def topics_by_port(self) -> Mapping[str, list[str]]:
         """Return for each port the topics on which nodes carry it, as written."""
-        topic_names: dict[str, list[str]] = defaultdict(list)
-        for node in self.architecture.nodes.values():
-            for use in node.uses:
-                if use.port:
-                    topic_names[use.port] += use.topics
-        return topic_names
+        uses = (use for node in self.architecture.nodes.values() for use in node.uses)
+        return _collect_by_first((use.port, topic) for use in uses if use.port for topic in use.topics)
 
     @cached_property
     def users_by_element(self) -> Mapping[str, list[str]]:
@@ -103,11 +92,17 @@ class ElementRelations:
     @cached_property
     def elements_by_owner(self) -> Mapping[str, list[str]]:
         """Return for each partner the groups and components that it owns."""
-        element_ids: dict[str, list[str]] = defaultdict(list)
-        for group in self.architecture.groups.values():
-            if group.owner:
-                element_ids[group.owner].append(group.id)
-        for component in self.architecture.components.values():
-            if component.owner:
-                element_ids[component.owner].append(component.id)
-        return element_ids
+        elements: list[Group | Component] = [
+            *self.architecture.groups.values(),
+            *self.architecture.components.values(),
+        ]
+        return _collect_by_first((element.owner, element.id) for element in elements if element.owner)
+
+
+def _collect_by_first(pairs: Iterable[tuple[str, str]]) -> Mapping[str, list[str]]:
+    """Return the second ones of pairs by the first ones."""
+    collected: dict[str, list[str]] = defaultdict(list)
+    for first, second in pairs:
+        collected[first].append(second)
+    # A defaultdict is returned on purpose: what nobody uses has an empty list.
+    return collected

@@ -136,11 +136,7 @@ def _describe_sources(
     source_ids = sorted(
         {source for port in common_inputs for source in own_connections.sources_by_input.get(port, frozenset())}
     )
-    staying_sources = {
-        name
-        for name in source_ids
-        if ("output", name) in versions.elements_before and ("output", name) in versions.elements_after
-    }
+    staying_sources = {name for name in source_ids if all(versions.find_both("output", name))}
     told_anyway = {name for name in staying_sources if not other_connections.readers_by_output.get(name)}
     if change_kind == "removed":
         # What is gone as well is an item of its own.
@@ -157,14 +153,7 @@ def _common_input(own_id: str, versions: VersionPair) -> str:
     """Return the common id of an input that may be given by its old one."""
     if ("input", own_id) in versions.elements_before or ("input", own_id) in versions.elements_after:
         return own_id
-    return next(
-        (
-            name
-            for (kind, name), old_element in versions.elements_before.items()
-            if kind == "input" and old_element.own_id == own_id
-        ),
-        own_id,
-    )
+    return versions.find_common_id("input", own_id)
 
 
 def _describe_open_end(name: str, verb: str, change_kind: str) -> str:
@@ -203,7 +192,7 @@ def _name_ports(inputs: Iterable[str], versions: VersionPair) -> str:
     """Return inputs by their partners: "`a.b.c` of Kite and `a.b.d` of Orsa"."""
     inputs_by_owner: dict[str, list[str]] = defaultdict(list)
     for name in sorted(inputs):
-        element = versions.elements_after.get(("input", name)) or versions.elements_before.get(("input", name))
+        element = versions.find_latest("input", name)
         inputs_by_owner[(element and element.owner) or ""].append(name)
     phrases = [
         tick_names(names) + (f" of {name_partner(owner, versions.partner_names)}" if owner else "")
@@ -214,7 +203,7 @@ def _name_ports(inputs: Iterable[str], versions: VersionPair) -> str:
 
 def is_read_by_others(output_id: str, versions: VersionPair) -> bool:
     """Whether another partner than its own reads an output, in either version."""
-    output = versions.elements_after.get(("output", output_id)) or versions.elements_before.get(("output", output_id))
+    output = versions.find_latest("output", output_id)
     for connections, elements in (
         (versions.connections_before, versions.elements_before),
         (versions.connections_after, versions.elements_after),
@@ -260,11 +249,8 @@ def describe_output_timing(change: Change, versions: VersionPair) -> str:
     if not output_id:
         return ""
     if key == "conditional":
-        phrase = (
-            "is sent only when there is something to say"
-            if change.after
-            else "is sent each time now, and not only when there is something to say"
-        )
+        condition = "when there is something to say"
+        phrase = f"is sent only {condition}" if change.after else f"is sent each time now, and not only {condition}"
         sentence = f"`{output_id}` {phrase}"
     elif change.before is None:
         sentence = f"`{output_id}`: largest gap set to {format_value(change.after)}"

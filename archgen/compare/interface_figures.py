@@ -17,8 +17,7 @@ from archgen.model.architecture import Architecture
 from archgen.model.node import Endpoint, Qos
 from archgen.model.partner_interfaces import PartnerInterface, list_givers
 from archgen.model.ros_distro import is_ros_1
-from archgen.timing.analysis import Analysis, TopicLoad
-from archgen.timing.endpoint_paces import find_pace
+from archgen.timing.analysis import Analysis, TopicLoad, find_pace
 from archgen.timing.figures.figure_wording import name_unknown_reason
 from archgen.timing.figures.timing_values import UNKNOWN_VALUE, TimingValue
 from archgen.timing.rates.link_traffic import find_topic_loads

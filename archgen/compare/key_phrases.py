@@ -8,7 +8,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from archgen.compare.comparison import Change
 from archgen.compare.field_changes import compare_field_lines
 from archgen.compare.kinds import ELEMENT_KINDS, find_key
-from archgen.compare.kinds.component_keys import NO_DAY
+from archgen.compare.kinds.key_readers import NO_DAY
 from archgen.compare.text_meaning import cut_text, describe_text_difference
 from archgen.compare.version_pair import VersionPair
 from archgen.diagnostics.common_wording import fit_lines, join_words, keep_first

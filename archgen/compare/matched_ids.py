@@ -23,6 +23,11 @@ class MatchedIds:
     confidence: dict[tuple[str, str], float] = field(default_factory=dict)
     _renamed_paths: dict[str, str] = field(default_factory=dict)
 
+    @property
+    def has_renames(self) -> bool:
+        """Whether an element of the project has another id now."""
+        return bool(self._renamed_paths)
+
     def add_pair(self, kind: str, old_id: str, new_id: str, confidence: float | None = None) -> None:
         """Record that two ids mean one element, with a confidence if that was recognised only by likeness."""
         self.new_ids.setdefault(kind, {})[old_id] = new_id

@@ -44,9 +44,9 @@ def unordered_values(values: Iterable[str]) -> frozenset[str]:
     return frozenset(values)
 
 
-def drop_unset_values(values: Mapping[str, object]) -> dict[str, object]:
-    """Drop the keys that have no value."""
-    return {key: value for key, value in values.items() if value is not None and value not in (frozenset(), ())}
+def is_unset(value: object) -> bool:
+    """Whether a key with this value has none: what is false or zero is a value."""
+    return value is None or value in (frozenset(), ())
 
 
 def parameter_leaves(prefix: str, value: object) -> Iterator[tuple[str, object]]:

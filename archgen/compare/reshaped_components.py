@@ -14,8 +14,18 @@ from archgen.compare.element_relations import ElementRelations
 from archgen.compare.key_phrases import shown_id
 from archgen.compare.kinds.functional_kinds import COMPONENT
 from archgen.compare.match_elements import describe_element, look_up_pair
-from archgen.compare.output_heirs import OutputHeir, component_of, find_heirs, has_lost_outputs, outputs_of, sources_of
-from archgen.compare.reshaping import Reshaping, describe_merger, describe_split, truncate_confidence
+from archgen.compare.reshaping import (
+    OutputHeir,
+    Reshaping,
+    component_of,
+    describe_merger,
+    describe_split,
+    find_heirs,
+    has_lost_outputs,
+    outputs_of,
+    sources_of,
+    truncate_confidence,
+)
 from archgen.compare.version_pair import VersionPair
 
 

@@ -1,4 +1,4 @@
-"""A component that was split, merged or copied, and which changes are nothing but a part of that."""
+"""A component that was split, merged or copied, by who has its outputs now, and which changes are nothing but a part of that."""
 
 from __future__ import annotations
 
@@ -6,13 +6,94 @@ from collections.abc import Iterator, Mapping, Sequence
 from typing import Literal
 
 from archgen.compare.comparison import Change
+from archgen.compare.element_likeness import Feature, FeatureMap, find_likely_pairs
+from archgen.compare.element_relations import ElementRelations
 from archgen.compare.key_phrases import format_value, name_partner, shown_id, tick_names
+from archgen.compare.kinds.functional_kinds import OUTPUT
+from archgen.compare.match_elements import describe_element
 from archgen.compare.normal_values import to_plain_data
-from archgen.compare.output_heirs import OutputHeir, component_of, outputs_of, sources_of
 from archgen.compare.text_meaning import describe_text_difference
-from archgen.compare.version_pair import ComparedElement, VersionPair
+from archgen.compare.version_pair import ComparedElement, ElementKey, VersionPair
 from archgen.diagnostics.common_wording import join_words
 from archgen.frozen import dataclass
+
+_MESSAGE_WEIGHT = 3
+"""What is on the wire counts apart from the type, which may have got another name with the output."""
+
+
+@dataclass(frozen=True, slots=True)
+class OutputHeir:
+    """An output that is gone, and the output of another component that took its place. Common ids."""
+
+    old_id: str
+    new_id: str
+    old_component: str
+    new_component: str
+    likeness: float
+
+
+def has_lost_outputs(versions: VersionPair) -> bool:
+    """Whether any output is gone."""
+    return any(kind == "output" and versions.is_removed(kind, name) for kind, name in versions.elements_before)
+
+
+def find_heirs(versions: VersionPair, relations: tuple[ElementRelations, ElementRelations]) -> Iterator[OutputHeir]:
+    """Yield the outputs that another component has now: of one type, one topic, with the same readers."""
+    lost_outputs = {
+        name: _describe_output(relations[0], element.own_id)
+        for (kind, name), element in versions.elements_before.items()
+        if kind == "output" and versions.is_removed(kind, name)
+    }
+    new_outputs = {
+        name: _describe_output(relations[1], name)
+        for kind, name in versions.elements_after
+        if kind == "output" and versions.is_added(kind, name)
+    }
+    for old_id, new_id, likeness in find_likely_pairs(lost_outputs, new_outputs):
+        old_component, new_component = (component_of(("output", output_id), versions) for output_id in (old_id, new_id))
+        if old_component != new_component:
+            yield OutputHeir(old_id, new_id, old_component, new_component, likeness)
+
+
+def _describe_output(relations: ElementRelations, output_id: str) -> FeatureMap:
+    output = relations.architecture.outputs[output_id]
+    # Unlike in `match_elements`, types are matched by now: one with another name is the same.
+    types = relations.common_ids("type", [output.type]) or frozenset(filter(None, [output.type]))
+    features = describe_element(OUTPUT, relations, output)
+    message = relations.architecture.message_of(output)
+    messages = relations.common_ids("message", [message]) or frozenset(filter(None, [message]))
+    return {
+        **features,
+        "type": Feature(features["type"].weight, types),
+        "message": Feature(_MESSAGE_WEIGHT, messages),
+    }
+
+
+def component_of(port_key: ElementKey, versions: VersionPair) -> str:
+    """Return the common id of a port's component, empty for no port: its path is the old one where the port is gone."""
+    element = versions.elements_before.get(port_key) or versions.elements_after.get(port_key)
+    return element.parent_key[1] if element and element.parent_key else ""
+
+
+def outputs_of(component: str, elements: Mapping[ElementKey, ComparedElement]) -> list[str]:
+    """Return the common ids of a component's outputs in one of the versions."""
+    return [
+        name
+        for (kind, name), element in elements.items()
+        if kind == "output" and element.parent_key == ("component", component)
+    ]
+
+
+def sources_of(component: str, versions: VersionPair, *, side: int) -> frozenset[str]:
+    """Return what a component reads in one of the versions."""
+    connections = (versions.connections_before, versions.connections_after)[side]
+    return frozenset(
+        source
+        for reader, sources in connections.sources_by_input.items()
+        if component_of(("input", reader), versions) == component
+        for source in sources
+    )
+
 
 _FOLLOWING_KEYS = {
     "component": ("requirements", "functionality", "title", "description", "tags", "timing.wcet", "timing.bcet"),
@@ -60,9 +141,8 @@ class Reshaping:
 
     def _component_ids_of(self, kind: str, common_id: str) -> frozenset[str]:
         """Return the components behind a component, a port, a node or what a node says of a port; else nothing."""
-        key = (kind, common_id)
-        elements = (self.versions.elements_before.get(key), self.versions.elements_after.get(key))
         if kind in {"component", "output", "input", "node", "port"}:
+            elements = self.versions.find_both(kind, common_id)
             refs = frozenset(ref for element in elements if element for ref in element.component_refs)
             return refs if kind != "port" else _components_of_ports(refs, self.versions)
         return frozenset()
@@ -95,15 +175,10 @@ class Reshaping:
 
     def _is_waypoint_inside(self, waypoint: str) -> bool:
         """Whether what a chain leads through is a component that takes part, an output or a node of it."""
-        keys = [(kind, waypoint) for kind in ("component", "output", "node")]
-        elements = [
-            element
-            for key in keys
-            for element in (self.versions.elements_before.get(key), self.versions.elements_after.get(key))
-            if element
-        ]
         return any(
-            element.component_refs and self.component_ids.issuperset(element.component_refs) for element in elements
+            element and element.component_refs and self.component_ids.issuperset(element.component_refs)
+            for kind in ("component", "output", "node")
+            for element in self.versions.find_both(kind, waypoint)
         )
 
 
@@ -127,16 +202,7 @@ def _components_of_ports(ports: frozenset[str], versions: VersionPair) -> frozen
 def _common_id(change: Change, versions: VersionPair) -> str:
     """Return the common id of what changed; what was removed is known by its own id."""
     kind = "input" if change.element_kind == "connection" else change.element_kind
-    if change.kind != "removed":
-        return change.element_id
-    return next(
-        (
-            name
-            for (other_kind, name), element in versions.elements_before.items()
-            if other_kind == kind and element.own_id == change.element_id
-        ),
-        change.element_id,
-    )
+    return versions.find_common_id(kind, change.element_id) if change.kind == "removed" else change.element_id
 
 
 def truncate_confidence(confidence: float) -> float:
@@ -200,8 +266,7 @@ def describe_merger(whole: str, heirs_by_part: Mapping[str, Sequence[OutputHeir]
 def _describe_rest(components: Sequence[str], heirs: Sequence[OutputHeir], versions: VersionPair) -> Iterator[str]:
     """Describe what came and went beside: nothing of it may hide in a sentence about something else."""
     old_outputs, new_outputs = (
-        [name for component in components for name in outputs_of(component, elements)]
-        for elements in (versions.elements_before, versions.elements_after)
+        [name for component in components for name in outputs_of(component, elements)] for elements in versions.elements
     )
     gone = set(old_outputs) - set(new_outputs) - {heir.old_id for heir in heirs}
     added = set(new_outputs) - set(old_outputs) - {heir.new_id for heir in heirs}
@@ -238,10 +303,8 @@ def _describe_other_sources(components: Sequence[str], own_outputs: set[str], ve
 
 def _describe_heir(heir: OutputHeir, versions: VersionPair) -> Iterator[str]:
     """Describe in what an output is not what it was."""
-    old_output, new_output = (
-        versions.elements_before["output", heir.old_id],
-        versions.elements_after["output", heir.new_id],
-    )
+    old_output = versions.elements_before["output", heir.old_id]
+    new_output = versions.elements_after["output", heir.new_id]
     old_type, new_type = old_output.values.get("type"), new_output.values.get("type")
     if old_type != new_type:
         yield f"`{heir.new_id}` carries {format_value(new_type)} instead of {format_value(old_type)}"

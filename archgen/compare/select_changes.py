@@ -15,14 +15,8 @@ from archgen.model.selector_evaluation import Selection
 
 def select_changes(comparison: Comparison, before: Selection, after: Selection) -> Comparison:
     """Keep what touches a selected component or node. Anything outside of them (the project, views) is dropped."""
-    old_keys = {
-        common_key(comparison, kind, element_id)
-        for kind, element_ids in _selected_ids(before)
-        for element_id in element_ids
-    }
-    wanted_keys = old_keys | {
-        (kind, element_id) for kind, element_ids in _selected_ids(after) for element_id in element_ids
-    }
+    old_keys = {common_key(comparison, *key) for key in _selected_keys(before)}
+    wanted_keys = old_keys | {*_selected_keys(after)}
     changes = tuple(
         change for change in comparison.changes if not wanted_keys.isdisjoint(_touched_keys(change, comparison))
     )
@@ -35,23 +29,14 @@ def select_changes(comparison: Comparison, before: Selection, after: Selection) 
     boundaries = tuple(
         boundary for boundary in comparison.boundaries if _touches_selection(boundary, wanted_keys, comparison)
     )
+    concerned_before = _finding_filter(wanted_keys, comparison.versions.elements_before)
+    concerned_after = _finding_filter(wanted_keys, comparison.versions.elements_after)
     return replace(
         comparison,
         changes=changes,
-        new_findings=tuple(
-            filter(_finding_filter(wanted_keys, comparison.versions.elements_after), comparison.new_findings)
-        ),
-        cured_findings=tuple(
-            filter(
-                _finding_filter(old_keys | wanted_keys, comparison.versions.elements_before), comparison.cured_findings
-            )
-        ),
-        silenced_findings=tuple(
-            filter(
-                _finding_filter(old_keys | wanted_keys, comparison.versions.elements_before),
-                comparison.silenced_findings,
-            )
-        ),
+        new_findings=tuple(filter(concerned_after, comparison.new_findings)),
+        cured_findings=tuple(filter(concerned_before, comparison.cured_findings)),
+        silenced_findings=tuple(filter(concerned_before, comparison.silenced_findings)),
         chains=chains,
         boundaries=boundaries,
         # A load is what all on a host or link add up to: of a part of them it says nothing.
@@ -83,9 +68,9 @@ def common_key(comparison: Comparison, kind: str, old_id: str) -> ElementKey:
     return kind, comparison.matched_ids.common_id(kind, old_id)
 
 
-def _selected_ids(selection: Selection) -> Iterator[tuple[str, frozenset[str]]]:
-    yield "component", selection.components
-    yield "node", selection.nodes
+def _selected_keys(selection: Selection) -> Iterator[ElementKey]:
+    yield from (("component", name) for name in selection.components)
+    yield from (("node", name) for name in selection.nodes)
 
 
 def _activities_and_nodes(chain_change: ChainChange) -> set[str]:
@@ -113,7 +98,7 @@ def _touched_keys(change: Change, comparison: Comparison) -> set[ElementKey]:
     own_id, versions = change.element_id, comparison.versions
     kind = "input" if change.element_kind == "connection" else change.element_kind
     common_id = comparison.matched_ids.common_id(kind, own_id) if change.kind == "removed" else own_id
-    for elements in (versions.elements_before, versions.elements_after):
+    for elements in versions.elements:
         element = elements.get((kind, common_id))
         touched_keys |= set(_keys_behind(element, elements)) if element else set()
     return touched_keys

@@ -70,10 +70,7 @@ def _common_length(words: Sequence[str], other_words: Sequence[str]) -> int:
 
 def _quote_around(words: Sequence[str], start: int, end: int) -> str:
     """Return some words with those around them; what is cut shows."""
-    first, last = (
-        max(start - _WORDS_AROUND, 0),
-        min(end + _WORDS_AROUND, len(words)),
-    )
+    first, last = max(start - _WORDS_AROUND, 0), min(end + _WORDS_AROUND, len(words))
     shown_words = [word if len(word) <= _MAX_WORD else f"{word[:_MAX_WORD]}…" for word in words[first:last]]
     is_cut = last < len(words) or len(shown_words) > _MAX_QUOTED_WORDS
     return " ".join([*(["…"] if first else []), *shown_words[:_MAX_QUOTED_WORDS], *(["…"] if is_cut else [])])
@@ -114,12 +111,12 @@ _CONTEXT_WORDS, _MAX_WORDS = 3, 12
 
 def differs_in_meaning(before: str, after: str) -> bool:
     """Whether two texts differ in more than capital letters, blanks and punctuation that is no sign of mathematics."""
-    return _list_tokens(before) != _list_tokens(after)
+    return before != after and _list_tokens(before) != _list_tokens(after)
 
 
 def differs_in_measures(before: str, after: str) -> bool:
     """Whether two texts give other numbers, units, frames or directions."""
-    return _list_measures(before) != _list_measures(after)
+    return before != after and _list_measures(before) != _list_measures(after)
 
 
 def quote_difference(before: str, after: str) -> tuple[str, str]:

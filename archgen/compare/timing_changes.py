@@ -25,10 +25,8 @@ class _ImprovementCauses(TimingCauses):
     """The causes of a figure that is better: those that cannot have made it worse."""
 
     def can_worsen(self, change: Change) -> bool:
-        has_direction = change.key is not None and find_key(change.element_kind, change.key).worsening in {
-            Worsening.LESS,
-            Worsening.MORE,
-        }
+        worsening = find_key(change.element_kind, change.key).worsening if change.key is not None else None
+        has_direction = worsening in {Worsening.LESS, Worsening.MORE}
         return can_affect_timing(change) and not (has_direction and super().can_worsen(change))
 
     def heavier_activities(self, activity_ids: Iterable[str]) -> list[str]:

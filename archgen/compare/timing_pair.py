@@ -53,6 +53,16 @@ def can_affect_timing(change: Change) -> bool:
     )
 
 
+_WORD_KEYS = frozenset({"title", "functionality", "description"})
+"""Not `external`, a text as well: from outside nobody may be served any more."""
+
+
+def is_rewording(change: Change) -> bool:
+    """Whether a change gives an element another title or text: no figure and no connection depends on these."""
+    is_text = change.key in _WORD_KEYS and find_effect(change.element_kind, change.key) is Effect.TEXT
+    return is_text and change.kind == "changed"
+
+
 def _asks_for_figures(change: Change) -> bool:
     """Whether a change says what figures have to keep, and changes none of them."""
     return change.key is not None and (change.key == "qos" or "promise." in change.key)

@@ -50,9 +50,7 @@ class OriginFinder:
         return self._differences[type_key]
 
     def _compare_values(self, type_key: TypeKey) -> tuple[object, object] | None:
-        versions = self._comparison.versions
-        element_key = ("component_type", type_key.component_type)
-        old, new = versions.elements_before.get(element_key), versions.elements_after.get(element_key)
+        old, new = self._comparison.versions.find_both("component_type", type_key.component_type)
         before, after = (element.values.get(type_key.key) if element else None for element in (old, new))
         is_other = old is not None and new is not None and before != after
         return (to_plain_data(before), to_plain_data(after)) if is_other else None

@@ -36,6 +36,7 @@ class ComparedElement:
     """Where it is declared: an element that moves between files has not changed."""
 
 
+ElementsByKey = Mapping[ElementKey, ComparedElement]
 _COMPONENT_KINDS = frozenset({"component", "composed", "input", "output"})
 
 
@@ -45,8 +46,8 @@ class VersionPair:
 
     connections_before: ConnectionMap
     connections_after: ConnectionMap
-    elements_before: Mapping[ElementKey, ComparedElement]
-    elements_after: Mapping[ElementKey, ComparedElement]
+    elements_before: ElementsByKey
+    elements_after: ElementsByKey
     serving_components: tuple[Mapping[str, frozenset[str]], Mapping[str, frozenset[str]]]
     """For each requirement the components that name it, before and after."""
 
@@ -77,6 +78,31 @@ class VersionPair:
     partner_names: Mapping[str, str] = field(default_factory=dict)
     """What people call each partner of either version (see `title_partners`)."""
 
+    @property
+    def elements(self) -> tuple[ElementsByKey, ElementsByKey]:
+        """Return the elements before and after."""
+        return self.elements_before, self.elements_after
+
+    def find_both(self, kind: str, name: str) -> tuple[ComparedElement | None, ComparedElement | None]:
+        """Return an element as it was before, and as it is after."""
+        return self.elements_before.get((kind, name)), self.elements_after.get((kind, name))
+
+    def find_common_id(self, kind: str, own_id: str) -> str:
+        """Return the common id of an element of the first version by its id there; that id where there is none."""
+        names = (name for (each, name), old in self.elements_before.items() if each == kind and old.own_id == own_id)
+        return next(names, own_id)
+
+    def find_owner(self, kind: str, name: str) -> str | None:
+        """Return the partner who owned an element before, or owns it if it is new."""
+        before, after = self.find_both(kind, name)
+        element = before or after
+        return element.owner if element else None
+
+    def find_latest(self, kind: str, name: str) -> ComparedElement | None:
+        """Return an element as it is after, or was before if it is gone."""
+        before, after = self.find_both(kind, name)
+        return after or before
+
     def may_be_unread(self, key: ElementKey) -> bool:
         """Whether an element that is missing in one version may be in a part of it that could not be read."""
         # The version in which it is missing: the first one for an added element, the second one for a removed element.
@@ -96,7 +122,7 @@ class VersionPair:
 
     def value_may_be_unread(self, key: ElementKey, before: object, after: object, value_key: str = "") -> bool:
         """Whether a value missing in one version may be in a part of it that could not be read; `value_key` names it."""
-        both_elements = (self.elements_before.get(key), self.elements_after.get(key))
+        both_elements = self.find_both(*key)
         for number, element in enumerate(both_elements):
             other_element = both_elements[1 - number]
             # Of what comes from a type that is not known, no value says anything: not even one that is there.
@@ -122,7 +148,7 @@ class VersionPair:
 
     def key_may_be_unread(self, key: ElementKey, value_key: str, side: int) -> bool:
         """Whether a key of an element was taken out of one version, since its value could not be read."""
-        element = (self.elements_before, self.elements_after)[side].get(key)
+        element = self.elements[side].get(key)
         if element and element.file and element.file in self.sound_files[side]:
             return False
         name = value_key.rpartition(".")[2]

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-
 from archgen.syntax.yaml_tree import MappingEntry, MappingNode, ScalarNode, list_entries
 
 _TYPE_KEYS = ("is", "same_as")
@@ -13,18 +11,11 @@ def list_type_entries(root: MappingNode) -> dict[str, MappingEntry]:
     """Return the component types that a project may name, by name: its own, then those of its libraries."""
     own_types = root.get("component_types")
     entries = dict(own_types.entries) if isinstance(own_types, MappingNode) else {}
-    for library in list_libraries(root):
+    for library in list_entries(root, "libraries"):
         for entry in list_entries(library.value, "component_types"):
             name = f"{library.key}.{entry.key}"
             entries[name] = MappingEntry(name, entry.key_span, _qualify_type(entry, library.key).value)
     return entries
-
-
-def list_libraries(root: MappingNode) -> Iterator[MappingEntry]:
-    """Yield the libraries of a merged project."""
-    libraries = root.get("libraries")
-    if isinstance(libraries, MappingNode):
-        yield from libraries
 
 
 def library_of_type(name: str) -> str | None:

@@ -150,7 +150,6 @@ class MissingKey:
     """A path of keys that leads nowhere: the key that is missing, what stands beside it, and the keys before it."""
 
     def __init__(self, word: str, known_keys: tuple[str, ...], keys_before: tuple[str, ...]) -> None:
-        """Take the missing key, the keys that are there, and the path to them."""
         self.word = word
         self.known_keys = known_keys
         self.keys_before = keys_before

@@ -9,7 +9,7 @@ from archgen.diagnostics.diagnostic import Diagnostic
 from archgen.diagnostics.suggestions import did_you_mean
 from archgen.model.conform_settings import AcceptedDifference
 
-_ALSO_SETTABLE = RULE_NAMES - {"stale-acceptance"}
+_ALSO_SETTABLE = RULE_NAMES - {"stale-acceptance", "stale-import"}
 
 
 def apply_acceptances(

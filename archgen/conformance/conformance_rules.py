@@ -27,6 +27,12 @@ RULES = (
     Rule("not-in-model", Severity.WARNING, "The robot has a node, or a node uses something, that the design has not."),
     Rule("runs-twice", Severity.ERROR, "Two nodes of the robot have the same full name."),
     Rule(
+        "other-state",
+        Severity.ERROR,
+        "A lifecycle node of the robot is in another state than the one in which the design has it once the robot is up.",
+    ),
+    Rule("other-host", Severity.WARNING, "A node of the robot runs on another computer than the design says."),
+    Rule(
         "not-latched",
         Severity.ERROR,
         "A publisher keeps nothing for those who come late, although the design says so (`durability: transient_local`).",
@@ -59,6 +65,7 @@ RULES = (
         "other-frame", Severity.ERROR, "Recorded messages are given in another coordinate frame than the design says."
     ),
     Rule("other-parameter", Severity.WARNING, "A parameter of the robot has another value than the design gives it."),
+    Rule("stale-import", Severity.NOTE, "What a slice was imported from changed since then."),
     Rule(
         "stale-acceptance",
         Severity.WARNING,

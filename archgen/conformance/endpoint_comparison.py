@@ -3,11 +3,21 @@
 from __future__ import annotations
 
 from collections import defaultdict
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Callable, Collection, Iterable, Iterator, Sequence
 
 from archgen.analyses.qos_compatibility import find_qos_conflicts
+from archgen.conformance.model_remedy import (
+    ModelRemedy,
+    add_internal,
+    name_endpoint,
+    qualify_endpoint,
+    show_policy,
+    type_endpoint,
+)
 from archgen.conformance.observed_robot import ObservedEndpoint, ObservedNode, ObservedRobot
+from archgen.conformance.seen_record import name_end
 from archgen.derivation.ros_names import shared_topic_names
+from archgen.diagnostics.common_wording import join_words
 from archgen.diagnostics.diagnostic import Diagnostic, Label, Severity
 from archgen.diagnostics.source_span import first_written_span
 from archgen.frozen import NamedTuple, dataclass, field, replace
@@ -41,16 +51,21 @@ class NodeComparison:
     pairs: list[EndpointPair] = field(default_factory=list)
     missing: list[Endpoint] = field(default_factory=list)
     untold: list[Endpoint] = field(default_factory=list)
+    renamed: list[Endpoint] = field(default_factory=list)
     findings: list[Diagnostic] = field(default_factory=list)
 
 
 class EndpointComparer:
-    """Compares nodes of one robot; what concerns all of them is looked up once."""
+    """Compares nodes of one robot; what concerns all of them is looked up once. `remedies`, and the names of ends that differ,
+    are collected on the way.
+    """
 
     def __init__(self, architecture: Architecture, robot: ObservedRobot) -> None:
         """Index the ends of the design and of the robot by node."""
         self._architecture = architecture
         self._robot = robot
+        self.remedies: list[ModelRemedy] = []
+        self.differing: set[str] = set()
         self._shared = shared_topic_names(architecture.shared_topics)
         self._designed: dict[str, list[Endpoint]] = defaultdict(list)
         for endpoint in architecture.endpoints:
@@ -64,6 +79,10 @@ class EndpointComparer:
         """Return what a node of the design uses: use and name."""
         return {(each.use, each.name) for each in self._designed[node_id] if not each.internal}
 
+    def list_expected(self, node_ids: Collection[str]) -> Iterator[Endpoint]:
+        """Yield what some nodes of the design have to use."""
+        yield from (each for node_id in node_ids for each in self._designed[node_id] if self._is_expected(each))
+
     def list_observed_uses(self, full_name: str) -> set[tuple[str, str | None]]:
         """Return what a node of the robot uses, without what ROS gives each node."""
         return {(each.use, each.name) for each in self._list_told(full_name)}
@@ -75,16 +94,19 @@ class EndpointComparer:
         if not observed_node.has_known_uses:
             comparison.untold += [each for each in designed if self._is_expected(each)]
             return comparison
-        observed = self._list_told(observed_node.full_name)
+        observed = self._list_told(observed_node.full_name, {(each.use, each.name) for each in designed})
         missing, strange = self._match(designed, observed, comparison.pairs)
-        for endpoint, seen in _pair_renamed(missing, strange):
+        for endpoint, seen in _pair_renamed(missing, strange, are_all=observed_node.has_all_uses):
             missing.remove(endpoint)
             strange.remove(seen)
             if self._is_expected(endpoint):
-                comparison.findings.append(_report_other_name(nodes[0], endpoint, seen, self._robot.where))
+                comparison.renamed.append(endpoint)
+                finding = _report_other_name(nodes[0], endpoint, seen, self._robot.where)
+                comparison.findings.append(finding)
+                self.remedies.append(name_endpoint(finding.rule, finding.message, nodes[0], endpoint, seen))
         unknown = [each for each in observed if each.name is None]
         for endpoint in filter(self._is_expected, missing):
-            if any(_may_be(endpoint, each) for each in unknown):
+            if not observed_node.has_all_uses or any(_may_be(endpoint, each) for each in unknown):
                 comparison.untold.append(endpoint)
             else:
                 comparison.missing.append(endpoint)
@@ -92,7 +114,7 @@ class EndpointComparer:
         unnamed = [each for each in designed if each.name is None]
         comparison.findings += (self._report_strange(nodes[0], seen, unnamed) for seen in strange)
         for pair in comparison.pairs:
-            comparison.findings += compare_types(nodes[0], pair, self._robot.where)
+            comparison.findings += self._compare_types(nodes[0], pair)
         return comparison
 
     def _match(
@@ -119,6 +141,15 @@ class EndpointComparer:
                 missing.append(endpoint)
         return missing, [each for key, each in by_name.items() if key not in met]
 
+    def _compare_types(self, node: Node, pair: EndpointPair) -> Iterator[Diagnostic]:
+        for finding in compare_types(node, pair, self._robot.where):
+            self.remedies.append(type_endpoint(finding.rule, finding.message, node, *pair))
+            self.differing.add(name_end(pair.designed))
+            yield finding
+        if pair.designed.message is None and pair.observed.message is not None:
+            message = f"`{pair.designed.name}` has the type `{pair.observed.message}`"
+            self.remedies.append(type_endpoint("", message, node, *pair))
+
     def compare_qos(self, pairs: Iterable[EndpointPair]) -> Iterator[Diagnostic]:
         """Yield where the quality of service is another one than is written, or where nothing is written, no longer fits."""
         pairs = [pair for pair in pairs if pair.designed.flow == "topic"]
@@ -131,15 +162,33 @@ class EndpointComparer:
             differing = self._list_differing(pair)
             if differing and pair.designed.qos.written:
                 for policy in differing:
-                    yield self._report_policy(pair, policy)
+                    finding = self._report_policy(pair, policy)
+                    self._add_qos_remedy(finding.rule, finding.message, pair, [policy])
+                    self.differing.add(name_end(pair.designed))
+                    yield finding
             elif differing:
-                yield from self._report_misfits(pair, by_topic[pair.designed.name])
+                misfits = list(self._report_misfits(pair, by_topic[pair.designed.name]))
+                yield from misfits
+                self.differing |= {name_end(pair.designed)} if misfits else set()
+                if not misfits:
+                    words = join_words([f"`{show_policy(pair.observed.qos[each])}`" for each in differing])
+                    message = f"`{pair.designed.name}` is {words} at `{pair.designed.node}`"
+                    self._add_qos_remedy("", message, pair, differing)
 
-    def _list_told(self, full_name: str) -> list[ObservedEndpoint]:
-        """Return what a node uses, without what ROS and its libraries give each node."""
+    def _add_qos_remedy(self, rule: str, message: str, pair: EndpointPair, policies: Iterable[str]) -> None:
+        node = self._architecture.nodes[pair.designed.node]
+        values = {policy: pair.observed.qos[policy] for policy in policies}
+        self.remedies.append(qualify_endpoint(rule, message, node, pair.designed, values))
+
+    def _list_told(self, full_name: str, designed: Collection[tuple[str, str | None]] = ()) -> list[ObservedEndpoint]:
+        """Return what a node uses, without what ROS and its libraries give each node, unless the design has it there."""
         endpoints = self._observed[full_name]
         names = {each.name for each in endpoints}
-        return [each for each in endpoints if each.name is None or not _is_common(each, names)]
+        return [
+            each
+            for each in endpoints
+            if each.name is None or (each.use, each.name) in designed or not _is_common(each, names)
+        ]
 
     def _is_expected(self, endpoint: Endpoint) -> bool:
         """Whether the robot has to have an end of the design."""
@@ -178,6 +227,8 @@ class EndpointComparer:
             known = f"may be `{candidates[0].port}`, whose name" if len(candidates) == 1 else "may be one whose name"
             message, help_line = f"{what}, which {known} the design does not say", f"write `{_write_name(seen)}` there"
             place = first_written_span(candidates[0].at, node.at)
+            if len(candidates) == 1:
+                self.remedies.append(name_endpoint("not-in-model", message, node, candidates[0], seen))
             return Diagnostic("not-in-model", message, place, Severity.NOTE, labels, help_line, node.id)
         entry = f"{_write_name(seen)}{f', message: {seen.message}' if seen.message else ''}"
         key = (seen.name or "").rpartition("/")[2] or "port"
@@ -187,22 +238,24 @@ class EndpointComparer:
         is_minor = seen.is_conditional or (seen.flow == "topic" and seen.name in self._shared)
         severity = Severity.NOTE if is_minor else None
         message = f"{what}, and the design does not say so"
+        self.remedies.append(add_internal("not-in-model", message, node, key, seen))
         return Diagnostic("not-in-model", message, node.at, severity, labels, help_line, node.id)
 
     def _list_differing(self, pair: EndpointPair) -> list[str]:
         """Return the policies in which both ends differ, as far as this kind of observation knows them."""
         qos, seen = pair.designed.qos, pair.observed.qos
         policies = _GRAPH_POLICIES if self._robot.kind == "graph" else tuple(seen)
-        if self._robot.kind == "graph" and qos.profile == "system_default":
+        if self._robot.kind in {"graph", "trace"} and qos.profile == "system_default":
             return []  # the middleware's own choice
         return [policy for policy in policies if policy in seen and getattr(qos, policy) != seen[policy]]
 
     def _report_policy(self, pair: EndpointPair, policy: str) -> Diagnostic:
         endpoint, seen = pair
-        designed, observed = map(_show_policy, (getattr(endpoint.qos, policy), seen.qos[policy]))
+        designed, observed = (f"`{show_policy(each)}`" for each in (getattr(endpoint.qos, policy), seen.qos[policy]))
         key = policy.replace("_", " ")
         message = f"the {key} of `{endpoint.name}` is {observed} {self._robot.where}, and {designed} in the design"
-        help_line = f"write `qos: {{{policy}: {observed.strip('`')}}}`, or change the program"
+        new_text = f"write `qos: {{{policy}: {observed.strip('`')}}}`"
+        help_line = f"{new_text if seen.qos[policy] is not None else f'take `{policy}` out'}, or change the program"
         labels = (Label(seen.at, f"it {_VERBS_OF_ONE[endpoint.use]} it like this"),)
         place = first_written_span(endpoint.qos.at, endpoint.at)
         is_latched = (policy, endpoint.use, endpoint.qos.durability) == ("durability", "publishes", "transient_local")
@@ -247,18 +300,18 @@ def _may_be(endpoint: Endpoint, seen: ObservedEndpoint) -> bool:
 
 
 def _pair_renamed(
-    missing: Sequence[Endpoint], strange: Sequence[ObservedEndpoint]
+    missing: Sequence[Endpoint], strange: Sequence[ObservedEndpoint], *, are_all: bool
 ) -> Iterator[tuple[Endpoint, ObservedEndpoint]]:
-    """Yield what is there under another name: what the program itself calls it, else the only one of its type, else one
-    that ends alike.
+    """Yield what is there under another name: what the program itself calls it, else one that ends alike, else, where `are_all` that
+    it uses, the only one of its type.
     """
     lacking, left = list(missing), list(strange)
     ways: tuple[Callable[[Endpoint, ObservedEndpoint], bool], ...] = (
-        lambda endpoint, seen: seen.name in {endpoint.program_name, endpoint.own_name},
+        lambda endpoint, seen: endpoint.program_name in {seen.name, seen.program_name} - {None},
         lambda endpoint, seen: _last_word(endpoint.name) == _last_word(seen.name),
         lambda endpoint, seen: endpoint.message is not None and endpoint.message == seen.message,
     )
-    for fits in ways:
+    for fits in ways if are_all else ways[:2]:
         for endpoint in tuple(lacking):
             fitting = [each for each in left if _may_be(endpoint, each) and fits(endpoint, each)]
             rivals = [each for each in lacking if fitting and _may_be(each, fitting[0]) and fits(each, fitting[0])]
@@ -298,7 +351,3 @@ def compare_types(node: Node, pair: EndpointPair, where: str) -> Iterator[Diagno
     labels = (Label(seen.at, "seen here"),)
     help_line = f"write `{seen.message}` as the type, or change the program"
     yield Diagnostic("other-type", message, place, None, labels, help_line, endpoint.port or node.id)
-
-
-def _show_policy(value: object) -> str:
-    return "`unlimited`" if value is None else f"`{value}`"

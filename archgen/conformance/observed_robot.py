@@ -9,8 +9,8 @@ from archgen.diagnostics.source_span import NO_SPAN, Span
 from archgen.frozen import dataclass, field
 from archgen.model.node import FlowKind, UseKind
 
-ObservationKind = Literal["workspace", "graph", "recording"]
-"""Sources and launch files; the graph of a running robot; messages that were recorded."""
+ObservationKind = Literal["workspace", "graph", "recording", "trace"]
+"""Sources and launch files; the graph of a running robot; messages that were recorded; what its programs did."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -28,6 +28,8 @@ class ObservedEndpoint:
     """The policies that are known: values of fields of `Qos`, by their names."""
     is_conditional: bool = False
     """Whether it is made only under a condition that is not known."""
+    program_name: str | None = None
+    """What its program says, made absolute, before remaps; None where only the name on the wire is known."""
     at: Span = field(default=NO_SPAN, compare=False)
 
 
@@ -41,8 +43,14 @@ class ObservedNode:
     """By dotted names; None where nobody asked for them."""
     has_known_uses: bool = True
     """Whether what it uses could be seen: not where its sources are elsewhere."""
+    has_all_uses: bool = True
+    """Whether it uses nothing else: not where a part of its sources is elsewhere, such as the base of its class."""
     is_conditional: bool = False
     """Whether it runs only under conditions that do not hold by default."""
+    state: str | None = None
+    """The state of a lifecycle node; None where nobody asked for it."""
+    host: str | None = None
+    """What the computer calls itself on which it runs; None where that is not known."""
     at: Span = field(default=NO_SPAN, compare=False)
 
 

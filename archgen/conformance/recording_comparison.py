@@ -11,6 +11,7 @@ from fractions import Fraction
 from archgen.conformance.conformance_rules import RULES
 from archgen.conformance.endpoint_comparison import EndpointComparer, EndpointPair, compare_types
 from archgen.conformance.observed_robot import ObservedEndpoint, ObservedRobot, RecordedTopic
+from archgen.conformance.seen_record import EndState, name_end
 from archgen.derivation.ros_names import shared_topic_names
 from archgen.diagnostics.common_wording import join_words
 from archgen.diagnostics.diagnostic import Diagnostic, Label, Severity
@@ -32,7 +33,8 @@ class RecordingComparer:
     """Compares the topics of a recording. `options` are those that the project sets, by rule."""
 
     def __init__(self, architecture: Architecture, robot: ObservedRobot, options: Mapping[str, OptionValues]) -> None:
-        """Index the topics of the design."""
+        """Index the topics of the design; `ends` are those of which the recording tells something."""
+        self.ends: dict[str, EndState] = {}
         self._architecture = architecture
         self._robot = robot
         self._margins = {
@@ -70,11 +72,15 @@ class RecordingComparer:
             ]
             for pair in own_pairs:
                 node = self._architecture.nodes[pair.designed.node]
-                yield from compare_types(node, pair, self._robot.where)
+                findings = list(compare_types(node, pair, self._robot.where))
+                self.ends[name_end(pair.designed)] = "differs" if findings else "seen" if recorded.count else "untold"
+                yield from findings
             # What several publishers offer may differ: which of them offered what is not in a recording.
             pairs += own_pairs if len(own_pairs) == 1 else []
             yield from self._compare_figures(topic, recorded)
-        yield from EndpointComparer(self._architecture, self._robot).compare_qos(pairs)
+        comparer = EndpointComparer(self._architecture, self._robot)
+        yield from comparer.compare_qos(pairs)
+        self.ends |= dict.fromkeys(comparer.differing, "differs")
 
     def _find_topic(self, recorded: RecordedTopic) -> Topic | None:
         topic = self._topics.get(recorded.name)

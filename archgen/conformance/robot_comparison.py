@@ -7,15 +7,17 @@ from collections.abc import Iterator, Mapping, Sequence
 from types import MappingProxyType
 
 from archgen.conformance.endpoint_comparison import EndpointComparer, EndpointPair
+from archgen.conformance.model_remedy import ModelRemedy, rename_node, set_parameter
 from archgen.conformance.observed_robot import ObservedNode, ObservedRobot
 from archgen.conformance.recording_comparison import RecordingComparer
-from archgen.derivation.wire.running_state import RunningStates, is_filled_in
+from archgen.conformance.seen_record import EndState, name_end
+from archgen.derivation.wire.running_state import RunningStates, has_unknown_name, is_filled_in
 from archgen.diagnostics.diagnostic import Diagnostic, Label, Severity
 from archgen.diagnostics.rule_options import OptionValues
 from archgen.diagnostics.source_span import Span, first_written_span
 from archgen.frozen import dataclass, field
 from archgen.model.architecture import Architecture
-from archgen.model.node import Node
+from archgen.model.node import Endpoint, Node
 from archgen.model.parameter_values import (
     canonical_name,
     describe_parameter_value,
@@ -49,15 +51,18 @@ class ComparedPart:
 
 @dataclass(slots=True)
 class RobotComparison:
-    """What came out, and what was looked at, in numbers. `untold` are ends of the design that nobody can see there."""
+    """What came out, and what was looked at, in numbers."""
 
     robot: ObservedRobot
     findings: list[Diagnostic] = field(default_factory=list)
     nodes: int = 0
     seen_nodes: int = 0
-    endpoints: int = 0
-    seen_endpoints: int = 0
-    untold: int = 0
+    ends: dict[str, EndState] = field(default_factory=dict)
+    """By their names in records, the ends of the design that were compared."""
+    topics: int = 0
+    """How many topics of the design somebody publishes; of a recording."""
+    seen_topics: int = 0
+    """How many of them have messages in it."""
     unknown: int = 0
     """Ends of the robot whose names only running the program tells."""
     compared_parameters: int = 0
@@ -65,6 +70,23 @@ class RobotComparison:
     """How many differences the project accepts."""
     early_nodes: list[str] = field(default_factory=list)
     """Nodes that are planned, and that the robot has already."""
+    remedies: list[ModelRemedy] = field(default_factory=list)
+    """What to write into the design so that it says what the robot does."""
+
+    @property
+    def endpoints(self) -> int:
+        """How many ends of the design were looked for."""
+        return len(self.ends)
+
+    @property
+    def seen_endpoints(self) -> int:
+        """How many of them are there."""
+        return sum(state in {"seen", "differs"} for state in self.ends.values())
+
+    @property
+    def untold(self) -> int:
+        """How many of them nobody can see there."""
+        return sum(state == "untold" for state in self.ends.values())
 
 
 def compare_robot(
@@ -79,8 +101,8 @@ def compare_robot(
     """
     if robot.kind == "recording":
         recording = RecordingComparer(architecture, robot, options)
-        result = RobotComparison(robot, [*recording.compare_topics()])
-        result.endpoints, result.seen_endpoints = recording.count_expected(), recording.count_recorded()
+        result = RobotComparison(robot, [*recording.compare_topics()], ends=recording.ends)
+        result.topics, result.seen_topics = recording.count_expected(), recording.count_recorded()
         return result
     return _Comparer(architecture, robot, part).compare()
 
@@ -100,6 +122,9 @@ class _Comparer:
         for node in architecture.nodes.values():
             if not node.is_program:
                 self._designed[node.full_name].append(node)
+        self._hosts = {
+            _fold_host(word): host.id for host in architecture.hosts.values() for word in (host.title, host.id)
+        }
         patterns = (*IGNORED_NODES, *part.ignored)
         self._observed = {
             each.full_name: each
@@ -122,13 +147,19 @@ class _Comparer:
         for node, observed in self._pair_renamed(lacking, strange):
             lacking.remove(node)
             strange.remove(observed)
-            result.findings.append(self._report_other_name(node, observed))
+            finding = self._report_other_name(node, observed)
+            result.findings.append(finding)
+            result.remedies.append(rename_node(finding.rule, finding.message, node, observed.full_name))
         result.findings += map(self._report_missing, lacking)
+        missing_ids = {node.id for node in lacking}
+        result.ends |= {name_end(each): "missing" for each in self._endpoints.list_expected(missing_ids)}
         result.findings += self._report_strange(strange)
         for name, nodes in self._designed.items():
             if name in self._observed:
                 self._compare_node(nodes, self._observed[name])
         result.findings += self._endpoints.compare_qos(self._pairs)
+        result.ends |= {name: "differs" for name in result.ends if name in self._endpoints.differing}
+        result.remedies += self._endpoints.remedies
         return result
 
     def _is_expected(self, node: Node) -> bool:
@@ -141,12 +172,18 @@ class _Comparer:
             result.early_nodes.append(observed.full_name)
         if observed.count > 1 and len(nodes) == 1:
             result.findings.append(self._report_twin(nodes[0], observed))
+        if len(nodes) == 1:
+            result.findings += self._compare_place(nodes[0], observed)
         comparison = self._endpoints.compare_node(nodes, observed)
         self._pairs += comparison.pairs
         result.findings += comparison.findings
-        result.seen_endpoints += len(comparison.pairs)
-        result.untold += len(comparison.untold)
-        result.endpoints += len(comparison.pairs) + len(comparison.missing) + len(comparison.untold)
+        states: tuple[tuple[EndState, Sequence[Endpoint]], ...] = (
+            ("missing", comparison.missing),
+            ("untold", comparison.untold),
+            ("differs", comparison.renamed),
+            ("seen", [pair.designed for pair in comparison.pairs]),
+        )
+        result.ends |= {name_end(each): state for state, ends in states for each in ends}
         for node in nodes if observed.parameters is not None else ():
             result.findings += self._compare_parameters(node, observed)
 
@@ -191,6 +228,9 @@ class _Comparer:
         if self._robot.unnamed_nodes:
             message += f", unless it is one of {self._robot.unnamed_nodes} whose names are computed"
             severity = Severity.NOTE
+        elif has_unknown_name(node):
+            message += ", unless it is called otherwise: its launch file does not say how"
+            severity = Severity.NOTE
         return Diagnostic("not-running", message, node.at, severity, help=help_line, element=node.id)
 
     def _report_strange(self, strange: Sequence[ObservedNode]) -> Iterator[Diagnostic]:
@@ -216,6 +256,21 @@ class _Comparer:
         labels = (Label(observed.at, "seen here"),)
         return Diagnostic("runs-twice", message, node.at, None, labels, help_line, node.id)
 
+    def _compare_place(self, node: Node, observed: ObservedNode) -> Iterator[Diagnostic]:
+        """Yield where a node is in another state, or on another computer, as far as both sides say in which and on which."""
+        state, labels = self._states.describe_node(node), (Label(observed.at, "seen here"),)
+        wanted = "active" if state.runs == "active" else state.lifecycle
+        if "lifecycle" in node.kinds and observed.state is not None and wanted and observed.state != wanted:
+            message = f"the lifecycle node `{node.full_name}` is {observed.state} {self._robot.where}, and {wanted} in the design"
+            help_line = f"find out what keeps it there, or write `start: {{state: {observed.state}}}`"
+            place = first_written_span(state.evidence["runs"].at if "runs" in state.evidence else node.at, node.at)
+            yield Diagnostic("other-state", message, place, None, labels, help_line, node.id)
+        host = self._hosts.get(_fold_host(observed.host)) if observed.host else None
+        if host is not None and node.host is not None and host != node.host:
+            message = f"`{node.full_name}` runs on `{host}` {self._robot.where}, and on `{node.host}` in the design"
+            help_line = f"write `host: {host}`, or start it on `{node.host}`"
+            yield Diagnostic("other-host", message, node.at, None, labels, help_line, node.id)
+
     def _compare_parameters(self, node: Node, observed: ObservedNode) -> Iterator[Diagnostic]:
         """Yield the parameters that have another value than the design gives them, or that the node does not declare."""
         ros_1, where = is_ros_1(self._architecture.distro), self._robot.where
@@ -239,11 +294,17 @@ class _Comparer:
                 seen = describe_parameter_value(values[name])
                 message = f"the parameter `{name}` of `{node.full_name}` is {seen} {where}, and {wanted} in the design"
                 help_line = f"write {seen} here, or set it there"
+                self._result.remedies.append(set_parameter("other-parameter", message, node, designed, values[name]))
             else:
                 continue
             place = first_written_span(designed.at, node.at)
             labels = (Label(observed.at, "seen here"),)
             yield Diagnostic("other-parameter", message, place, None, labels, help_line, node.id)
+
+
+def _fold_host(name: str) -> str:
+    """Return what a computer calls itself, or what the design calls it, in one spelling: `arm-pc.local` is `arm_pc`."""
+    return name.partition(".")[0].casefold().replace("-", "_").replace(" ", "_")
 
 
 def _has_substitution(value: object) -> bool:

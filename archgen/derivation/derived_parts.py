@@ -31,7 +31,6 @@ class DerivedParts:
     """Parts of the versions of one project that were derived so far, by id."""
 
     def __init__(self) -> None:
-        """Start empty."""
         self._settings: object = None
         self._planned: KnownParts[tuple[Component, Node]] = KnownParts()
         self._forget_parts()

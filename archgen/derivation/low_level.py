@@ -10,13 +10,7 @@ from archgen.derivation.frame_endpoints import derive_frame_endpoints, index_wri
 from archgen.derivation.inner_memory import mark_inner_memory
 from archgen.derivation.media_channels import derive_channels
 from archgen.derivation.parameter_names import name_ports_by_parameters
-from archgen.derivation.port_endpoints import (
-    NodePart,
-    derive_reading_endpoints,
-    derive_writing_endpoints,
-    find_node_parts,
-    index_writers,
-)
+from archgen.derivation.port_endpoints import NodePart, find_node_parts, index_writers
 from archgen.derivation.portless_endpoints import complete_message, count_shared_keys, derive_portless_endpoints
 from archgen.derivation.wire.running_state import complete_states
 from archgen.frozen import dataclass, field, replace
@@ -33,14 +27,13 @@ def derive_low_level(architecture: Architecture, memory: DerivedParts | None = N
 
     What `memory` knows from another version of the project is taken over where it is the same.
     """
+    memory = memory or DerivedParts()
     architecture = name_ports_by_parameters(mark_inner_memory(architecture))
-    nodes = dict(architecture.nodes) | {node.id: node for node in make_planned_nodes(architecture, memory)}
+    nodes = dict(architecture.nodes) | {node.id: node for node in _make_planned_nodes(architecture, memory)}
     with_planned = replace(architecture, nodes=nodes)
     shared_topics = ros_names.shared_topic_names(architecture.shared_topics)
-    node_parts = find_node_parts(with_planned)
-    if memory is not None:
-        memory.start_version(architecture, shared_topics)
-        node_parts = memory.recall_parts(node_parts)
+    memory.start_version(architecture, shared_topics)
+    node_parts = memory.recall_parts(find_node_parts(with_planned))
     endpoints = _derive_endpoints(with_planned, node_parts, shared_topics, memory)
     endpoints = complete_states(with_planned, endpoints, memory)
     return replace(
@@ -55,20 +48,13 @@ def _derive_endpoints(
     architecture: Architecture,
     node_parts: Mapping[str, tuple[NodePart, ...]],
     shared_topics: frozenset[str],
-    memory: DerivedParts | None,
+    memory: DerivedParts,
 ) -> tuple[Endpoint, ...]:
     """Derive the endpoints of all nodes, in the order of nodes."""
     # All writing endpoints come first: a reader takes its topic's name and message from those that write it.
     shared_keys = count_shared_keys(architecture)
     writing = {
-        node_id: memory.derive_writing(architecture, node_id, node_parts[node_id])
-        if memory
-        else [
-            endpoint
-            for node_part in node_parts[node_id]
-            for endpoint in derive_writing_endpoints(architecture, node_part)
-        ]
-        for node_id in architecture.nodes
+        node_id: memory.derive_writing(architecture, node_id, node_parts[node_id]) for node_id in architecture.nodes
     }
     portless = {
         node_id: list(derive_portless_endpoints(node, architecture.distro, shared_keys))
@@ -83,11 +69,7 @@ def _derive_endpoints(
     all_endpoints: list[Endpoint] = []
     for node_id in architecture.nodes:
         all_endpoints += writing[node_id]
-        if memory is not None:
-            all_endpoints += memory.derive_reading(writer_index, node_id, node_parts[node_id])
-        else:
-            for node_part in node_parts[node_id]:
-                all_endpoints += derive_reading_endpoints(writer_index, node_part)
+        all_endpoints += memory.derive_reading(writer_index, node_id, node_parts[node_id])
         all_endpoints += (complete_message(endpoint, writer_index) for endpoint in portless[node_id])
         if node_id in frames_by_node:
             own_endpoints = (*writing[node_id], *portless[node_id])
@@ -109,7 +91,7 @@ def _gather_topics(
     endpoints: Iterable[Endpoint],
     shared_topics: frozenset[str],
     types: Mapping[str, ConceptualType],
-    memory: DerivedParts | None,
+    memory: DerivedParts,
 ) -> dict[str, Topic]:
     """Gather endpoints by name and flow; where a name is not known, by the model's connections. Further flows with the same name get a key of their own: `/name (service)`."""
     users: dict[tuple[str, FlowKind], _EndpointUsers] = {}
@@ -122,12 +104,11 @@ def _gather_topics(
     topics: dict[str, Topic] = {}
     for (name, flow), topic_users in users.items():
         key = name if name not in topics else f"{name} ({flow})"
-        known = memory.find_topic(name, flow, topic_users.writers, topic_users.readers) if memory else None
+        known = memory.find_topic(name, flow, topic_users.writers, topic_users.readers)
         if known is None:
             is_shared = flow == "topic" and name in shared_topics
             known = _make_topic(name, flow, topic_users, types, is_shared=is_shared)
-            if memory is not None:
-                memory.keep_topic(known)
+            memory.keep_topic(known)
         topics[key] = known
     return topics
 
@@ -150,7 +131,7 @@ def _make_topic(
     )
 
 
-def make_planned_nodes(architecture: Architecture, memory: DerivedParts | None = None) -> Iterator[Node]:
+def _make_planned_nodes(architecture: Architecture, memory: DerivedParts) -> Iterator[Node]:
     """Yield the nodes to add, in the order of components."""
     implemented_ids = {component for node in architecture.nodes.values() for component in node.implements}
     components = [each for each in architecture.components.values() if each.id not in implemented_ids]
@@ -158,11 +139,10 @@ def make_planned_nodes(architecture: Architecture, memory: DerivedParts | None =
         [each.id for each in components], {**architecture.components, **architecture.shells}, architecture.nodes
     )
     for component in components:
-        node = memory.find_planned(component, node_ids[component.id]) if memory else None
+        node = memory.find_planned(component, node_ids[component.id])
         if node is None:
             node = _make_planned_node(component, node_ids[component.id])
-            if memory is not None:
-                memory.keep_planned(component, node)
+            memory.keep_planned(component, node)
         yield node
 
 

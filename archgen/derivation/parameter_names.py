@@ -73,9 +73,12 @@ class _NameReader:
     def _find_names(self, use: PortUse) -> _GivenNames:
         names: dict[str, Span] = {}
         is_known, is_open = True, False
+        template = use.named_by or next(iter(use.when))
         for prefix, word in self._list_bindings(use):
             holds = self._judge_conditions(use, prefix, word)
             if holds is False:
+                if not _LIST.search(template) and "*" not in template:
+                    return _GivenNames({}, is_known=True, is_open=False)
                 continue
             is_known &= holds is not None
             parameter = self.parameters.get(_fill_in(use.named_by, prefix, word)) if use.named_by else None

@@ -158,6 +158,18 @@ def _take_out_of_list(finding: Diagnostic, sources: SourceTexts, match: re.Match
     return SuggestedFix((TextEdit(span, match["meant"]),), is_certain=True)
 
 
+def _key_list_by_id(finding: Diagnostic, sources: SourceTexts, match: re.Match[str]) -> SuggestedFix | None:
+    """Write a mapping where ids stand in a list of one line, behind their key."""
+    line = sources.line_of(finding.span.file, finding.span.line) or ""
+    start = line.find("[", finding.span.column - 1)
+    end = line.find("]", start) + 1
+    ids = [each.strip(" \"'") for each in line[start + 1 : end - 1].split(",")]
+    if start < 0 or "{" + ", ".join(f"{each}: {{}}" for each in ids) + "}" != match["meant"]:
+        return None
+    span = finding.span._replace(column=start + 1, end_line=finding.span.line, end_column=end + 1)
+    return SuggestedFix((TextEdit(span, match["meant"]),), is_certain=False)
+
+
 def _take_dash_away(finding: Diagnostic, sources: SourceTexts, _: re.Match[str]) -> SuggestedFix | None:
     line, end = sources.line_of(finding.span.file, finding.span.line) or "", finding.span.column - 1
     if not re.search(r"\A *- +\Z", line[:end]):
@@ -235,6 +247,7 @@ _FORMS: Mapping[re.Pattern[str], Callable[[Diagnostic, SourceTexts, re.Match[str
     re.compile(r"write `(?P<meant>[]}\"'])` at its end\Z"): _close,
     re.compile(r"write `(?P<meant>[^`]+)`, without brackets\Z"): _take_out_of_list,
     re.compile(r"(?:.*; )?write `(?P<meant>[^`]+)`(?:, without .*|;.*)?\Z"): _write_value,
+    re.compile(r"`[^`]+` is keyed by id: write `(?P<meant>\{[^`]+)` instead of a list"): _key_list_by_id,
     re.compile(r"take the `- ` away"): _take_dash_away,
     re.compile(r"write it below `(?P<parent>[^`]+)`: `"): _write_below,
     re.compile(r"write (?P<meant>a plain blank|nothing|[^`]*`[^`]+`,?) in its place\Z|delete it\Z"): _replace_character,

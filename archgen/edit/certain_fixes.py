@@ -41,11 +41,11 @@ def _plan_file(
         return None
     mark = BYTE_ORDER_MARK if text.startswith(BYTE_ORDER_MARK) else ""
     text = text.removeprefix(mark)
-    edits = _join_edits(fixes)
+    edits = join_edits(fixes)
     new_text = apply_edits(text, edits)
     proven = edits if _is_proven(checked_project, file, text, new_text) else ()
     if not proven and len(fixes) > 1:  # one of them is wrong: each by itself
-        proven = _join_edits([fix for fix in fixes if _is_proven(checked_project, file, text, apply_edits(text, fix))])
+        proven = join_edits([fix for fix in fixes if _is_proven(checked_project, file, text, apply_edits(text, fix))])
         new_text = apply_edits(text, proven)
         proven = proven if _is_proven(checked_project, file, text, new_text) else ()
     if not proven or new_text == text:
@@ -53,7 +53,7 @@ def _plan_file(
     return FileEdit(file, content, f"{mark}{new_text}".encode(), min(edit.span.line for edit in proven)), len(proven)
 
 
-def _join_edits(fixes: Sequence[tuple[TextEdit, ...]]) -> tuple[TextEdit, ...]:
+def join_edits(fixes: Sequence[tuple[TextEdit, ...]]) -> tuple[TextEdit, ...]:
     """Return the edits of several fixes in their order, without those that overlap an earlier one."""
     joined: list[TextEdit] = []
     for edit in sorted({edit for fix in fixes for edit in fix}):

@@ -21,8 +21,8 @@ from archgen.project.slice_parsing import parse_slice
 from archgen.syntax.file_patterns import YAML_ENDINGS
 from archgen.syntax.folder_files import FolderFiles
 from archgen.syntax.project_files import read_text_file
-from archgen.syntax.yaml_parser import list_comments
-from archgen.syntax.yaml_tree import MappingEntry, MappingNode, YamlDocument
+from archgen.syntax.yaml_parser import list_comments, parse_yaml
+from archgen.syntax.yaml_tree import MappingEntry, MappingNode, YamlDocument, node_to_data
 from archgen.syntax.yaml_writer import FlowMapping
 
 _BY = " by `archgen import "
@@ -104,6 +104,13 @@ def read_slice_content(file: str, text: str) -> SliceContent:
     if document is None or any(each.severity in {None, Severity.ERROR} for each in diagnostics):
         return SliceContent({}, diagnostics)
     return SliceContent({entry.key: to_texts(entry.value) for entry in document.root}, (), tuple(document.root))
+
+
+def read_plain_mapping(file: str, text: str) -> Mapping[str, Any]:
+    """Return the mapping that a text of YAML is; an empty one for anything else."""
+    document, _ = parse_yaml(file, text)
+    data = node_to_data(document.root) if document is not None else None
+    return data if isinstance(data, dict) else {}
 
 
 @dataclass(frozen=True, slots=True)

@@ -54,7 +54,7 @@ def adds_only_element(old_text: str, new_text: str, path: tuple[str, ...], eleme
     expected = _with_element(node_to_data(old_document.root), path, element)
     # An element in braces has no empty keys, so either form may be read back.
     expected_inline = _with_element(node_to_data(old_document.root), path, element.without_empty_keys())
-    return _freeze_order(node_to_data(new_document.root)) in (_freeze_order(expected), _freeze_order(expected_inline))
+    return freeze_order(node_to_data(new_document.root)) in (freeze_order(expected), freeze_order(expected_inline))
 
 
 def _with_element(data: object, path: tuple[str, ...], element: NewElement) -> object:
@@ -64,12 +64,12 @@ def _with_element(data: object, path: tuple[str, ...], element: NewElement) -> o
     return {**mapping, path[0]: _with_element(mapping.get(path[0]), path[1:], element)}
 
 
-def _freeze_order(data: object) -> object:
+def freeze_order(data: object) -> object:
     """Return data as tuples, so that the order of mappings counts: elements appear in it."""
     if isinstance(data, dict):
-        return tuple((key, _freeze_order(value)) for key, value in data.items())
+        return tuple((key, freeze_order(value)) for key, value in data.items())
     if isinstance(data, list):
-        return [_freeze_order(value) for value in data]
+        return [freeze_order(value) for value in data]
     return (type(data), repr(data))
 
 
@@ -214,7 +214,7 @@ class NewElement:
     """An id and its body. `hints` are comments behind keys that are still empty: what belongs there."""
 
     id: str
-    body: Mapping[str, ElementValue]
+    body: ElementValue
     hints: Mapping[str, str] = field(default_factory=dict)
 
     def nested_below(self, keys: tuple[str, ...]) -> NewElement:
@@ -231,7 +231,7 @@ class NewElement:
 
     def without_empty_keys(self) -> NewElement:
         """Return the element as it is written in braces, where a key cannot be left empty."""
-        return NewElement(self.id, _drop_empty_keys(self.body))
+        return NewElement(self.id, _drop_empty_keys(self.body)) if isinstance(self.body, Mapping) else self
 
     def to_block(self, indent: str, unit: int) -> list[str]:
         """Write the element as the lines of a block."""

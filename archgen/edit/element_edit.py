@@ -9,7 +9,8 @@ import codecs
 import difflib
 import posixpath
 import re
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
+from itertools import accumulate
 
 from archgen.diagnostics.diagnostic import Diagnostic
 from archgen.diagnostics.source_span import Span
@@ -64,11 +65,11 @@ class FileEdit:
 def plan_edit(checked_project: CheckedProject, place: ElementPlace, element: NewElement, element_id: str) -> FileEdit:
     """Return the edit that adds an element; `element_id` is its complete id. Raise EditRefusedError."""
     old_content, text = (
-        (None, _schema_line(checked_project, place))
+        (None, make_schema_line(checked_project, place))
         if place.is_new_file
         else read_editable(checked_project, place.file)
     )
-    new_text = _insert_element(place, element, text)
+    new_text = insert_element(place, element, text)
     # Two proofs: `adds_only_element` looks at the file alone, this one at the whole project with it.
     consequences = edit_proof.find_consequences(
         checked_project, place.file, new_text.removeprefix(BYTE_ORDER_MARK), element_id
@@ -90,19 +91,24 @@ BYTE_ORDER_MARK = codecs.BOM_UTF8.decode()
 
 
 def read_editable(checked_project: CheckedProject, file: str) -> tuple[bytes, str]:
-    """Read a file of the project. Raise EditRefusedError."""
+    """Read a file of the project again. Raise EditRefusedError, also where somebody wrote into it meanwhile."""
     data = checked_project.loaded_project.files.fetch_bytes(file)
     if isinstance(data, FileRefusal):
         message = f"{file} cannot be read: {data.message}"
         raise EditRefusedError(message)
     try:
-        return data, data.decode()
+        text = data.decode()
     except UnicodeDecodeError:
         message = f"{file} is not UTF-8"
         raise EditRefusedError(message) from None
+    # Places are those of the text that was checked.
+    if checked_project.sources.text_of(file) not in {None, text.removeprefix(BYTE_ORDER_MARK)}:
+        message = f"{file} was changed since it was read"
+        raise EditRefusedError(message, "run this again")
+    return data, text
 
 
-def _schema_line(checked_project: CheckedProject, place: ElementPlace) -> str:
+def make_schema_line(checked_project: CheckedProject, place: ElementPlace) -> str:
     """Return the first line of a new file: the schema comment, where the project's other files have one."""
     for file in checked_project.yaml_files:
         match = SCHEMA_LINE_PATTERN.match(checked_project.sources.text_of(file) or "")
@@ -116,7 +122,7 @@ def _schema_line(checked_project: CheckedProject, place: ElementPlace) -> str:
     return ""
 
 
-def _insert_element(place: ElementPlace, element: NewElement, text: str) -> str:
+def insert_element(place: ElementPlace, element: NewElement, text: str) -> str:
     """Return the text with the element inserted, the first proposal that proves right. Raise EditRefusedError."""
     byte_order_mark = BYTE_ORDER_MARK if text.startswith(BYTE_ORDER_MARK) else ""
     plain_text = text.removeprefix(BYTE_ORDER_MARK)
@@ -167,6 +173,8 @@ class ParsedText:
 
     lines: tuple[str, ...]
     root: MappingNode
+    line_starts: tuple[int, ...]
+    """How many characters stand before each line, and before the end."""
 
     @property
     def line_ending(self) -> str:
@@ -176,7 +184,7 @@ class ParsedText:
 
     def offset_of(self, line: int, column: int) -> int:
         """Return how many characters stand before a place."""
-        return sum(len(text) for text in self.lines[: line - 1]) + column - 1
+        return self.line_starts[min(line, len(self.line_starts)) - 1] + column - 1
 
     def text_from(self, value: YamlNode) -> str:
         """Return the text from where a value begins, behind its anchor, to the end of the line."""
@@ -214,7 +222,8 @@ def parse_text(file: str, text: str) -> ParsedText:
     if re.search(r"\r(?!\n)", text):
         msg = f"{file} holds line breaks that editors and parsers see differently"
         raise CannotInsertError(msg)
-    return ParsedText(tuple(_LINE_PATTERN.findall(text)), document.root)
+    lines = tuple(_LINE_PATTERN.findall(text))
+    return ParsedText(lines, document.root, tuple(accumulate(map(len, lines), initial=0)))
 
 
 def find_holder(parsed: ParsedText, path: tuple[str, ...]) -> tuple[MappingNode, tuple[str, ...]]:
@@ -272,7 +281,7 @@ def _insert_in_block(parsed: ParsedText, table: MappingNode, element: NewElement
     end = last_entry.value.span.end_line - (
         1 if last_entry.value.span.end_column == 1 and last_entry.value.span.end_line > last_entry.key_span.line else 0
     )
-    is_spaced = _has_blank_lines(parsed, entries)
+    is_spaced = has_blank_lines(parsed, entries)
     trimmed = end
     while trimmed > last_entry.key_span.line and not parsed.lines[trimmed - 1].strip():
         trimmed -= 1
@@ -322,7 +331,7 @@ def _end_of_comments(parsed: ParsedText, line: int, column: int) -> int:
     return end
 
 
-def _has_blank_lines(parsed: ParsedText, entries: list[MappingEntry]) -> bool:
+def has_blank_lines(parsed: ParsedText, entries: Sequence[MappingEntry]) -> bool:
     """Return whether blank lines separate the elements of a block."""
     number = entries[-1].key_span.line - 1
     while number > 0 and parsed.lines[number - 1].lstrip().startswith("#"):

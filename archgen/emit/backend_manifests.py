@@ -41,6 +41,8 @@ class BackendFile:
     executable: bool = False
     expects: str | None = None
     """The template of the words that the user's own file should hold."""
+    offers: str | None = None
+    """The template of the words that it may use of what is generated."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -53,7 +53,7 @@ def _group_by_new_folder(files: Mapping[Path, bytes]) -> list[tuple[Path | None,
 def _place_loose_files(members: Mapping[Path, bytes], staged_file: Path, top: Path, created_paths: list[Path]) -> None:
     """Put files into folders that exist."""
     for path, data in members.items():
-        _refuse_outside(path.parent, top)
+        refuse_outside(path.parent, top)
         if not path.is_symlink() and holds_bytes(path, data):
             continue  # left by a run that was killed
         staged_file.write_bytes(data)
@@ -73,7 +73,7 @@ def _place_new_folder(
     umask = os.umask(0)
     os.umask(umask)
     staged_top.chmod(0o777 & ~umask)
-    _refuse_outside(folder.parent, top if top.is_dir() else folder.parent)
+    refuse_outside(folder.parent, top if top.is_dir() else folder.parent)
     if os.path.lexists(folder):  # since it was looked for
         raise FileExistsError(errno.EEXIST, os.strerror(errno.EEXIST), str(folder))
     staged_top.rename(folder)
@@ -81,7 +81,8 @@ def _place_new_folder(
     created_paths += sorted(folder.rglob("*"))
 
 
-def _refuse_outside(folder: Path, top: Path) -> None:
+def refuse_outside(folder: Path, top: Path) -> None:
+    """Raise OutputError where a folder, which need not be there yet, is reached by a link that leads out of another one."""
     if not Path(os.path.realpath(folder)).is_relative_to(os.path.realpath(top)):
         msg = f"{folder} is a link that leads out of {top}"
         raise OutputError(msg, "nothing was written")

@@ -91,7 +91,9 @@ def name_written_format(stream: BinaryIO) -> str | None:
         if not _has_program_name(stream):
             return None
         # Its list of files, at the end, names the parts of the one or the other.
-        return "workbook" if b"xl/workbook.xml" in _read_end(stream) else "Word document"
+        end = _read_end(stream)
+        named = {"workbook": b"xl/workbook.xml", "presentation": b"ppt/presentation.xml"}
+        return next((name for name, part in named.items() if part in end), "Word document")
     if head.startswith(b"%PDF-"):
         return "PDF" if _read_end(stream).endswith(PDF_MARK) else None
     name = next((name for name, mark in _HEAD_MARKS if mark.match(head)), None)

@@ -1,5 +1,5 @@
 """Write a folder of pictures: one file per picture and format. Links in an SVG lead to the other pictures of the
-folder.
+folder, and its letters come with it: on other computers figures would be ragged in columns.
 """
 
 from __future__ import annotations
@@ -7,6 +7,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 
 from archgen.emit import file_tree
+from archgen.emit.font_subset import embed_fonts
 from archgen.emit.picture import Picture
 from archgen.emit.site import page_pictures as drawing
 from archgen.views.shapes import split_anchor
@@ -19,15 +20,16 @@ def build_picture_tree(pictures: Mapping[str, Picture], formats: Sequence[str]) 
     """Build the files of all pictures in these formats (`svg`, `png`, `pdf`, `dot`). Formats that were not drawn are
     left out.
     """
+    style = embed_fonts(picture.svg for picture in pictures.values() if picture.svg) if "svg" in formats else ""
     files = (
-        (f"{name}.{form}", _picture_bytes(picture, form, pictures))
+        (f"{name}.{form}", _picture_bytes(picture, form, pictures, style))
         for name, picture in pictures.items()
         for form in formats
     )
     return file_tree.make_file_tree((path, data) for path, data in files if data is not None)
 
 
-def _picture_bytes(picture: Picture, format_name: str, pictures: Mapping[str, Picture]) -> bytes | None:
+def _picture_bytes(picture: Picture, format_name: str, pictures: Mapping[str, Picture], style: str) -> bytes | None:
     if format_name == "dot":
         return picture.dot.encode()
     # The fields of Picture are called as the formats are.
@@ -41,4 +43,4 @@ def _picture_bytes(picture: Picture, format_name: str, pictures: Mapping[str, Pi
         target = f"{_FOLDER_BY_KIND.get(kind, kind)}/{name}"
         return f"{prefix}{target}.svg" if target in pictures and target != picture.id else None
 
-    return drawing.standalone_svg(data, href)
+    return drawing.standalone_svg(data, href, style)

@@ -54,17 +54,23 @@ def explain_long_path(path: str) -> str:
     )
 
 
+_UNSAFE_LETTERS = frozenset('\\:*?"<>|')
+
+
 @lru_cache(65536)  # asked of each file of a site, and of each in its manifest
 def is_safe_path(path: str) -> bool:
     """Return whether a path stays below its folder and means the same file on every system."""
-    parts = path.split("/")
-    return all(
+    return all(map(_is_safe_part, path.split("/")))
+
+
+@lru_cache(65536)  # files of one folder have it in common
+def _is_safe_part(part: str) -> bool:
+    return (
         part not in {"", ".", ".."}
-        and not set(part) & set('\\:*?"<>|')
+        and _UNSAFE_LETTERS.isdisjoint(part)
         and part.isprintable()
         and part[-1] not in ". "
         and not _RESERVED_NAME.match(part.lower())
-        for part in parts
     )
 
 

@@ -16,6 +16,7 @@ _WHOLE_MODEL_RULES = frozenset(
         "endless-trigger",
         "late-chain",
         "lost-samples",
+        "open-chain",
         "overloaded-host",
         "period-conflict",
         "saturated-link",
@@ -29,6 +30,7 @@ _WHOLE_MODEL_RULES = frozenset(
         "empty-view",
         "idle-executor",
         "missing-detail",
+        "own-source",
         "uncovered-requirement",
         "unneeded-exception",
         "unmet-ready",
@@ -61,6 +63,7 @@ _LACK_RULES = frozenset(
         "unjustified-node",
         "unknown-message",
         "unmapped-type",
+        "unlike-program",
         "unpublished-frame",
         "unstarted-program",
     }

@@ -50,21 +50,20 @@ def find_unpushed_base(repository: GitRepository) -> BaseCommit | None:
 
 def find_common_commit(repository: GitRepository, left: str, right: str) -> BaseCommit:
     """Return the newest commit that two revisions have in common. Raise ShallowError or GitError."""
-    result = run_git(
-        repository.top,
-        "merge-base",
-        "--end-of-options",
-        resolve_revision(repository, left),
-        resolve_revision(repository, right),
-    )
-    commit = result.text.split("\n")[0]
-    if commit:
-        return BaseCommit(commit, f"where {right} left {left}")
+    commits = list_common_commits(repository, left, right)
+    if commits:
+        return BaseCommit(commits[0], f"where {right} left {left}")
     if repository.is_shallow:
         msg = f"the commit at which `{right}` left `{left}` is not in this shallow clone: {UNSHALLOW_HINT}"
         raise ShallowError(msg)
     msg = f"`{left}` and `{right}` have no commit in common: name the revision to compare with"
     raise GitError(msg)
+
+
+def list_common_commits(repository: GitRepository, left: str, right: str) -> list[str]:
+    """Return the newest commits that two revisions have in common: several where lines were merged crosswise."""
+    revisions = (resolve_revision(repository, name) for name in (left, right))
+    return run_git(repository.top, "merge-base", "--all", "--end-of-options", *revisions).text.split()
 
 
 def _find_main_line(repository: GitRepository, setting: str | None) -> str:

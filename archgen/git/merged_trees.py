@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import os
 import tempfile
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from pathlib import Path
 
@@ -56,15 +56,17 @@ class MergeFolder:
         tree, *entries = result.text.split("\0")
         return TreeMerge(tree, tuple(_read_conflicts(entries)))
 
-    def replace_files(self, tree: str, contents: Mapping[str, tuple[str, bytes]]) -> str:
-        """Return a tree with the modes and contents of some files replaced, by path."""
+    def replace_files(self, tree: str, contents: Mapping[str, tuple[str, bytes | None]]) -> str:
+        """Return a tree with the modes and contents of some files replaced, by path; None takes a file away."""
         if not contents:
             return tree
         self._run_safely("read-tree", tree)
+        no_blob = "0" * len(self._run_safely("rev-parse", tree))
         for path, (mode, content) in contents.items():
-            blob = self._run_safely("hash-object", "-w", "--stdin", stdin=content)
+            blob = "" if content is None else self._run_safely("hash-object", "-w", "--stdin", stdin=content)
+            fields = f"{mode} {blob}" if blob else f"0 {no_blob}"
             # The path last and by NUL, since it may hold anything.
-            entry = f"{mode} {blob}\t{path}\0".encode("utf-8", "surrogateescape")
+            entry = f"{fields}\t{path}\0".encode("utf-8", "surrogateescape")
             self._run_safely("update-index", "-z", "--index-info", stdin=entry)
         return self._run_safely("write-tree")
 
@@ -74,15 +76,23 @@ class MergeFolder:
         words = [word for parent in parents for word in ("-p", parent)]
         return self._run_safely(*person, "commit-tree", tree, *words, "-m", "merged")
 
+    def pack_commit(self, commit: str, known_commits: Sequence[str]) -> bytes:
+        """Return a pack of what a commit has and others have not, for the repository that lent its objects."""
+        revisions = "\n".join((commit, *(f"^{each}" for each in known_commits)))
+        return self._run_checked("pack-objects", "--revs", "--stdout", "-q", stdin=f"{revisions}\n".encode()).output
+
     def _run(self, *words: str, stdin: bytes = b"") -> GitResult:
         return run_git(self._folder, "--git-dir=.", *words, stdin=stdin)
 
     def _run_safely(self, *words: str, stdin: bytes = b"") -> str:
+        return self._run_checked(*words, stdin=stdin).text.strip()
+
+    def _run_checked(self, *words: str, stdin: bytes = b"") -> GitResult:
         result = self._run(*words, stdin=stdin)
         if result.status:
             msg = f"git cannot merge here: {result.error_text}"
             raise GitError(msg)
-        return result.text.strip()
+        return result
 
 
 def _explain_failure(error_text: str) -> str:

@@ -11,6 +11,7 @@ import struct
 import zipfile
 import zlib
 from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
 from pathlib import Path
 from types import MappingProxyType
 from typing import IO
@@ -27,7 +28,6 @@ MAX_ELEMENTS = 500_000
 """A tree takes about 2 kB of memory for each: so many are a model of a hundred thousand classes, or of 50 MB."""
 MAX_NAMESPACES = 200
 """So many may have names in one place: they are copied for each element that gives a name to one more."""
-_MALFORMED_HELP = "export it again from the tool that wrote it"
 _NO_NAMESPACES: Mapping[str, str] = MappingProxyType({"xml": "http://www.w3.org/XML/1998/namespace"})
 
 
@@ -75,44 +75,77 @@ def parse_xml(file: str, data: bytes) -> XmlElement:
     return _TreeBuilder(file).build(data)
 
 
-class _TreeBuilder:
-    """The elements that are open between two events of the parser."""
+class XmlEvents:
+    """What expat tells of one file: a subclass takes its elements and texts one by one, in their order."""
+
+    malformed_help = "export it again from the tool that wrote it"
+    doctype_help = "models need neither: take out the `<!DOCTYPE ...>`"
 
     def __init__(self, file: str) -> None:
-        self._file = file
-        self._root: XmlElement | None = None
-        self._count = 0
-        self._open: list[tuple[XmlElement, Mapping[str, str], list[str]]] = []
-        self._parser = expat.ParserCreate()
+        """Take the file's name in messages."""
+        self.file = file
+        self.is_root_seen = False
+        self.parser = expat.ParserCreate()
         # Else expat calls back for each line of a text by itself.
-        self._parser.buffer_text = True
-        self._parser.StartElementHandler = self._start
-        self._parser.EndElementHandler = self._end
-        self._parser.CharacterDataHandler = self._add_text
-        self._parser.StartDoctypeDeclHandler = self._refuse_doctype
-        self._parser.EntityDeclHandler = self._refuse_doctype
+        self.parser.buffer_text = True
+        self.parser.buffer_size = 65_536
+        self.parser.StartElementHandler = self.start
+        self.parser.EndElementHandler = self.end
+        self.parser.CharacterDataHandler = self.add_text
+        self.parser.StartDoctypeDeclHandler = self._refuse_doctype
+        self.parser.EntityDeclHandler = self._refuse_doctype
 
-    def build(self, data: bytes) -> XmlElement:
+    def start(self, name: str, attributes: dict[str, str]) -> None:
+        """Take the beginning of an element."""
+        raise NotImplementedError
+
+    def end(self, name: str) -> None:
+        """Take the end of an element."""
+        raise NotImplementedError
+
+    def add_text(self, text: str) -> None:
+        """Take a piece of text."""
+        raise NotImplementedError
+
+    @contextmanager
+    def explained(self) -> Iterator[None]:
+        """Feed the parser inside of this: what expat raises becomes a ForeignFileError."""
         try:
-            self._parser.Parse(data, True)  # noqa: FBT003 - expat's signature
+            yield
         except expat.ExpatError as error:
-            problem = explain_syntax(error, is_root_seen=self._root is not None, malformed_help=_MALFORMED_HELP)
-            raise self._refuse(problem, None if problem.is_at_end else error) from None
+            problem = explain_syntax(error, is_root_seen=self.is_root_seen, malformed_help=self.malformed_help)
+            raise self.refuse(problem.message, problem.help_line, None if problem.is_at_end else error) from None
         except (LookupError, ValueError) as error:
-            raise self._refuse(explain_encoding(error)) from None
-        assert self._root is not None  # noqa: S101 - a file without an element is a syntax error
-        return self._root
+            problem = explain_encoding(error)
+            raise self.refuse(problem.message, problem.help_line) from None
 
-    def _refuse(self, problem: XmlProblem, error: expat.ExpatError | None = None) -> ForeignFileError:
-        line = error.lineno if error else self._parser.CurrentLineNumber
-        column = (error.offset if error else self._parser.CurrentColumnNumber) + 1
-        return ForeignFileError(problem.message, Span(self._file, line, column, line, column + 1), problem.help_line)
+    def refuse(self, message: str, help_line: str, error: expat.ExpatError | None = None) -> ForeignFileError:
+        """Return why the file is not read, with the place of an error, else the one that the parser has come to."""
+        line = error.lineno if error else self.parser.CurrentLineNumber
+        column = (error.offset if error else self.parser.CurrentColumnNumber) + 1
+        return ForeignFileError(message, Span(self.file, line, column, line, column + 1), help_line)
 
     def _refuse_doctype(self, *_: object) -> None:
         words = "it declares a document type or entities, which archgen does not follow"
-        raise self._refuse(XmlProblem(words, "models need neither: take out the `<!DOCTYPE ...>`"))
+        raise self.refuse(words, self.doctype_help)
 
-    def _start(self, name: str, attributes: dict[str, str]) -> None:
+
+class _TreeBuilder(XmlEvents):
+    """The elements that are open between two events of the parser."""
+
+    def __init__(self, file: str) -> None:
+        super().__init__(file)
+        self._root: XmlElement | None = None
+        self._count = 0
+        self._open: list[tuple[XmlElement, Mapping[str, str], list[str]]] = []
+
+    def build(self, data: bytes) -> XmlElement:
+        with self.explained():
+            self.parser.Parse(data, True)  # noqa: FBT003 - expat's signature
+        assert self._root is not None  # noqa: S101 - a file without an element is a syntax error
+        return self._root
+
+    def start(self, name: str, attributes: dict[str, str]) -> None:
         namespaces = self._open[-1][1] if self._open else _NO_NAMESPACES
         # Most elements declare none and share the mapping of the one around: half a million copies would fill memory.
         declared = {
@@ -123,27 +156,27 @@ class _TreeBuilder:
         namespaces = {**namespaces, **declared} if declared else namespaces
         if len(namespaces) > MAX_NAMESPACES:
             words = f"more than {MAX_NAMESPACES} namespaces have names here"
-            raise self._refuse(XmlProblem(words, "no model needs so many: export it again"))
-        place = (self._parser.CurrentLineNumber, self._parser.CurrentColumnNumber + 1)
+            raise self.refuse(words, "no model needs so many: export it again")
+        place = (self.parser.CurrentLineNumber, self.parser.CurrentColumnNumber + 1)
         element = XmlElement(name, attributes, namespaces, place)
         if self._open:
             self._open[-1][0].children.append(element)
         elif self._root is None:
-            self._root = element
+            self._root, self.is_root_seen = element, True
         if len(self._open) >= MAX_DEPTH:
             words = f"its elements nest deeper than {MAX_DEPTH}"
-            raise self._refuse(XmlProblem(words, "no model does: export it again"))
+            raise self.refuse(words, "no model does: export it again")
         self._count += 1
         if self._count > MAX_ELEMENTS:
             words = f"it has more than {MAX_ELEMENTS:,} elements"
-            raise self._refuse(XmlProblem(words, "export the model in parts"))
+            raise self.refuse(words, "export the model in parts")
         self._open.append((element, namespaces, []))
 
-    def _add_text(self, text: str) -> None:
+    def add_text(self, text: str) -> None:
         if self._open:
             self._open[-1][2].append(text)
 
-    def _end(self, _name: str) -> None:
+    def end(self, name: str) -> None:  # noqa: ARG002 - the element knows it
         element, _, texts = self._open.pop()
         # Text comes in pieces between the children; added up piece by piece it would take the square of its length.
         element.text = "".join(texts)

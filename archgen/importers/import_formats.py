@@ -7,7 +7,7 @@ from functools import partial
 from pathlib import Path
 from typing import Any
 
-from archgen.frozen import dataclass
+from archgen.frozen import dataclass, fields
 from archgen.importers.foreign_import import ForeignImport
 from archgen.installed_plugins import (
     IMPORTERS,
@@ -53,14 +53,7 @@ class ImportFormat:
     """Who brings it where it does not ship: package and version."""
 
 
-_SWITCHES = (
-    "takes_arguments",
-    "takes_environment",
-    "takes_launch_files",
-    "keeps_ids",
-    "has_dated_files",
-    "has_requirements",
-)
+_SWITCHES = [each.name for each in fields(ImportFormat) if each.default is False]
 _FACTS = frozenset({"api", "summary", "endings", "reader", "rank", *_SWITCHES})
 _NEEDED_FACTS = frozenset({"summary", "endings", "reader"})
 

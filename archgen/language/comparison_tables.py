@@ -30,13 +30,13 @@ class KeyFacts(TypedDict, total=False):
 
 
 KIND_EFFECTS: Mapping[str, Reach] = {
-    "project": "system", "partner": "system", "variant": "system", "use_case": "text", "requirement": "system",
-    "view": "text", "group": "timing", "component": "timing", "component_type": "system", "input": "timing",
-    "output": "timing", "indicator": "system", "type": "timing", "frame": "system", "promise": "system",
-    "deprecation": "system", "node": "timing", "host": "timing", "container": "timing", "resource": "timing",
-    "link": "timing", "start": "system", "start_ready": "system", "policy": "system", "require": "system",
-    "forbid": "system", "timing": "timing", "timing_input": "timing", "timing_output": "timing", "latency": "timing",
-    "chain": "timing",
+    "project": "system", "partner": "system", "milestone": "system", "variant": "system", "use_case": "text",
+    "requirement": "system", "view": "text", "group": "timing", "component": "timing", "component_type": "system",
+    "input": "timing", "output": "timing", "indicator": "system", "type": "timing", "frame": "system",
+    "promise": "system", "deprecation": "system", "node": "timing", "host": "timing", "container": "timing",
+    "resource": "timing", "link": "timing", "start": "system", "start_ready": "system", "policy": "system",
+    "require": "system", "forbid": "system", "timing": "timing", "timing_input": "timing", "timing_output": "timing",
+    "latency": "timing", "chain": "timing",
 }
 """How far a change of an element of each kind reaches at most."""
 KEY_FACTS: Mapping[str, Mapping[str, KeyFacts]] = {
@@ -45,6 +45,7 @@ KEY_FACTS: Mapping[str, Mapping[str, KeyFacts]] = {
         "title": {"form": "title", "effect": "text"},
         "version": {"effect": "system", "verb": "is version"},
         "description": {"form": "prose", "effect": "text"},
+        "license": {"effect": "system", "verb": "is licensed under"},
         "middleware": {"default": "ros", "effect": "system"},
     },
     "partner": {
@@ -52,6 +53,14 @@ KEY_FACTS: Mapping[str, Mapping[str, KeyFacts]] = {
         "description": {"form": "prose", "effect": "text"},
         "contact": {"effect": "system"},
         "reviewers": {"form": "set", "effect": "system"},
+        "properties.": {"form": "properties", "effect": "system"},
+        "hints.": {"form": "hints", "effect": "system"},
+    },
+    "milestone": {
+        "title": {"form": "title", "effect": "text"},
+        "description": {"form": "prose", "effect": "text"},
+        "date": {"effect": "system", "verb": "is on"},
+        "needs": {"effect": "system", "noun": "selector of what it needs"},
         "properties.": {"form": "properties", "effect": "system"},
         "hints.": {"form": "hints", "effect": "system"},
     },
@@ -293,6 +302,7 @@ KEY_FACTS: Mapping[str, Mapping[str, KeyFacts]] = {
         "scheduling": {"default": "fair", "worse": "always"},
         "scheduling.": {"form": "mapping", "worse": "always"},
         "description": {"form": "prose", "effect": "text"},
+        "address": {"effect": "system"},
         "environment.": {"form": "mapping", "effect": "system"},
         "tags": {"form": "set", "effect": "text", "verbs": ("now has the tag", "no longer has the tag")},
         "properties.": {"form": "properties", "effect": "system"},
@@ -327,6 +337,7 @@ KEY_FACTS: Mapping[str, Mapping[str, KeyFacts]] = {
         "latency.": {"inner": "latency"},
         "protocol": {"effect": "system"},
         "title": {"form": "title", "effect": "text"},
+        "owner": {"names": "partner", "effect": "system", "verb": "belongs to"},
         "properties.": {"form": "properties", "effect": "system"},
         "hints.": {"form": "hints", "effect": "system"},
     },

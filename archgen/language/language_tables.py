@@ -11,20 +11,20 @@ from collections.abc import Mapping
 from typing import Literal
 
 KindName = Literal[
-    "slice", "project", "partner", "agreement", "interface_terms", "agreed_terms", "signature", "ros", "rules",
-    "layout", "report", "review", "accepted", "accepted_key", "conform", "accepted_difference", "site", "variant",
-    "variant_changes", "library", "use_case", "actor", "step", "requirement", "property_declaration", "view", "group",
-    "component", "component_type", "component_node", "input", "output", "type_input", "performance", "indicator",
-    "operation", "parameter", "parameter_declaration", "type", "field", "constant", "frame", "promise", "deprecation",
-    "node", "internal", "topic_use", "call_use", "qos", "host", "host_scheduling", "fair_scheduling", "container",
-    "resource", "link", "start", "start_ready", "policy", "require", "forbid", "timing", "timing_input",
+    "slice", "project", "partner", "milestone", "agreement", "interface_terms", "agreed_terms", "signature", "ros",
+    "rules", "layout", "report", "review", "accepted", "accepted_key", "conform", "generate", "accepted_difference",
+    "site", "variant", "variant_changes", "library", "use_case", "actor", "step", "requirement", "property_declaration",
+    "view", "group", "component", "component_type", "component_node", "input", "output", "type_input", "performance",
+    "indicator", "operation", "parameter", "parameter_declaration", "type", "field", "constant", "frame", "promise",
+    "deprecation", "node", "internal", "topic_use", "call_use", "qos", "host", "host_scheduling", "fair_scheduling",
+    "container", "resource", "link", "start", "start_ready", "policy", "require", "forbid", "timing", "timing_input",
     "timing_output", "timing_use", "trigger", "execution_time", "latency", "chain",
 ]
 SectionName = Literal[
     "archgen", "project", "sources", "partners", "agreements", "ros", "rules", "layout", "report", "use_cases",
     "requirements", "properties", "glossary", "component_types", "libraries", "groups", "nodes", "types", "hosts",
-    "containers", "resources", "links", "frames", "chains", "views", "policies", "review", "conform", "site",
-    "variants",
+    "containers", "resources", "links", "frames", "chains", "views", "policies", "review", "conform", "generate",
+    "site", "variants", "milestones",
 ]
 
 KEYS: Mapping[str, Mapping[str, str]] = {
@@ -35,14 +35,20 @@ KEYS: Mapping[str, Mapping[str, str]] = {
         "glossary": "glossary", "component_types": "component_types", "libraries": "libraries", "groups": "groups",
         "nodes": "nodes", "types": "types", "hosts": "hosts", "containers": "containers", "resources": "resources",
         "links": "links", "frames": "frames", "chains": "chains", "views": "views", "policies": "policies",
-        "review": "review", "conform": "conform", "site": "site", "variants": "variants",
+        "review": "review", "conform": "conform", "generate": "generate", "site": "site", "variants": "variants",
+        "milestones": "milestones",
     },
     "project": {
-        "id": "id", "title": "text", "version": "text", "description": "prose", "middleware": "project.middleware",
+        "id": "id", "title": "text", "version": "text", "description": "prose", "license": "text",
+        "middleware": "project.middleware",
     },
     "partner": {
         "title": "text", "description": "prose", "contact": "text", "reviewers": "reviewers",
         "properties": "properties", "hints": "hints",
+    },
+    "milestone": {
+        "title": "text", "description": "prose", "date": "day", "needs": "milestone.needs", "properties": "properties",
+        "hints": "hints",
     },
     "agreement": {
         "terms": "agreed_terms", "interfaces": "agreement.interfaces", "signed": "signature",
@@ -60,7 +66,8 @@ KEYS: Mapping[str, Mapping[str, str]] = {
     },
     "ros": {
         "distro": "ros.distro", "interfaces": "files", "shared_topics": "shared_topics", "parameters": "ros_parameters",
-        "environment": "start_environment", "definitions": "definitions", "parameter_texts": "parameter_texts",
+        "environment": "start_environment", "discovery": "ros.discovery", "definitions": "definitions",
+        "parameter_texts": "parameter_texts",
     },
     "rules.gap-above-promise": {
         "severity": "severity", "margin": "percentage",
@@ -145,6 +152,9 @@ KEYS: Mapping[str, Mapping[str, str]] = {
     "conform": {
         "against": "listed_texts", "launch": "listed_texts", "ignore": "listed_texts", "accepted": "conform.accepted",
     },
+    "generate": {
+        "into": "text", "backends": "generate.backends",
+    },
     "accepted_difference": {
         "rule": "listed_texts", "reason": "text", "until": "text",
     },
@@ -160,7 +170,8 @@ KEYS: Mapping[str, Mapping[str, str]] = {
         "use_cases": "use_cases", "requirements": "requirements", "properties": "property_declarations",
         "glossary": "glossary", "component_types": "changed_component_types", "groups": "groups", "nodes": "nodes",
         "types": "types", "hosts": "hosts", "containers": "containers", "resources": "resources", "links": "links",
-        "frames": "frames", "chains": "chains", "views": "views", "policies": "policies", "site": "site",
+        "frames": "frames", "chains": "chains", "views": "views", "policies": "policies", "generate": "generate",
+        "site": "site", "milestones": "milestones",
     },
     "library": {
         "path": "library_path", "package": "package_name", "component_types": "component_types", "types": "types",
@@ -317,7 +328,8 @@ KEYS: Mapping[str, Mapping[str, str]] = {
     },
     "host": {
         "title": "text", "cores": "count", "scheduling": "host_scheduling", "description": "prose",
-        "environment": "start_environment", "tags": "tags", "properties": "properties", "hints": "hints",
+        "address": "host_address", "environment": "start_environment", "tags": "tags", "properties": "properties",
+        "hints": "hints",
     },
     "host_scheduling": {
         "fair": "fair_scheduling",
@@ -336,7 +348,7 @@ KEYS: Mapping[str, Mapping[str, str]] = {
     },
     "link": {
         "connects": "link.connects", "bandwidth": "bandwidth", "latency": "latency", "protocol": "link.protocol",
-        "title": "text", "properties": "properties", "hints": "hints",
+        "title": "text", "owner": "link.owner", "properties": "properties", "hints": "hints",
     },
     "start": {
         "phase": "start_phase", "after": "start.after", "ready": "start_ready", "respawn": "flag",
@@ -404,11 +416,12 @@ ENTRIES: Mapping[str, str] = {
     "requirements": "requirement", "resources": "resource", "start_environment": "start_environment.*",
     "timing_calls": "timing_calls.*", "timing_inputs": "timing_input", "timing_outputs": "timing_output",
     "timing_uses": "timing_use", "topics": "topic_use", "type_inputs": "type_input", "types": "type", "urls": "urls.*",
-    "use_cases": "use_case", "variants": "variant", "views": "view", "agreement.interfaces": "interface_terms",
-    "signature.by": "text", "signature.versions.*": "version_digits", "signature.versions": "signature.versions.*",
-    "rules": "rules.*", "report.abbreviations": "text", "report.texts": "report.texts.*",
-    "report.pictures": "report.pictures.*", "review.accepted": "accepted", "conform.accepted": "accepted_difference",
-    "performance": "indicator", "operation.request": "operation.request.*",
+    "use_cases": "use_case", "variants": "variant", "views": "view", "milestones": "milestone",
+    "agreement.interfaces": "interface_terms", "signature.by": "text", "signature.versions.*": "version_digits",
+    "signature.versions": "signature.versions.*", "rules": "rules.*", "report.abbreviations": "text",
+    "report.texts": "report.texts.*", "report.pictures": "report.pictures.*", "review.accepted": "accepted",
+    "conform.accepted": "accepted_difference", "generate.backends.*": "generate.backends.*.*",
+    "generate.backends": "generate.backends.*", "performance": "indicator", "operation.request": "operation.request.*",
     "operation.response": "operation.response.*", "parameter": "parameter", "host_scheduling": "host_order",
 }
 """Mappings by id: the part of their values."""
@@ -458,8 +471,8 @@ BARE_PARTS: frozenset[str] = frozenset({
 })
 """Values that are no text."""
 DATA_PARTS: frozenset[str] = frozenset({
-    "component_node.parameters", "container.parameters", "hints", "node.parameters", "parameter", "port_conditions",
-    "ros_parameters",
+    "component_node.parameters", "container.parameters", "generate.backends", "hints", "node.parameters", "parameter",
+    "port_conditions", "ros_parameters",
 })
 """What other programs read: it stays as it was written, whatever its keys are called."""
 OFFERS: Mapping[str, tuple[str, ...]] = {
@@ -467,13 +480,14 @@ OFFERS: Mapping[str, tuple[str, ...]] = {
     "component_type_item": ("component_type_names",), "component_type_name": ("component_type_names",),
     "field_type": ("types",), "group_components": ("implemented",), "message_part": ("types",), "owners": ("partners",),
     "port_list": ("inputs",), "tags": ("tags",), "topic_names": ("topics",), "type_name": ("types",),
-    "project.middleware": ("media",), "ros.distro": ("distros",), "variant.of": ("variants",),
-    "variant.without": ("selectors",), "step.from": ("step_ends",), "step.to": ("step_ends",),
-    "requirement.parent": ("requirements",), "requirement.verified_by": ("use_cases", "chains"),
-    "requirement.use_cases": ("use_cases",), "view.show": ("selectors",), "view": ("selectors",),
-    "component_node.container": ("containers",), "component_node.host": ("hosts",), "input.from": ("sources",),
-    "input.medium": ("media",), "input.frame": ("frames",), "input": ("sources",), "output.medium": ("media",),
-    "output.frame": ("frames",), "output": ("types",), "type_input.medium": ("media",), "type_input.frame": ("frames",),
+    "project.middleware": ("media",), "milestone.needs": ("selectors",), "ros.distro": ("distros",),
+    "variant.of": ("variants",), "variant.without": ("selectors",), "step.from": ("step_ends",),
+    "step.to": ("step_ends",), "requirement.parent": ("requirements",),
+    "requirement.verified_by": ("use_cases", "chains"), "requirement.use_cases": ("use_cases",),
+    "view.show": ("selectors",), "view": ("selectors",), "component_node.container": ("containers",),
+    "component_node.host": ("hosts",), "input.from": ("sources",), "input.medium": ("media",),
+    "input.frame": ("frames",), "input": ("sources",), "output.medium": ("media",), "output.frame": ("frames",),
+    "output": ("types",), "type_input.medium": ("media",), "type_input.frame": ("frames",),
     "operation.request": ("types",), "operation.response": ("types",), "operation": ("types",),
     "type.message": ("topic_messages", "call_messages"), "type.frame": ("frames",),
     "type": ("topic_messages", "call_messages"), "field": ("types",), "frame.parent": ("frames",),
@@ -482,21 +496,21 @@ OFFERS: Mapping[str, tuple[str, ...]] = {
     "node": ("implemented",), "topic_use.message": ("topic_messages",), "topic_use": ("topics",),
     "call_use.message": ("call_messages",), "container.host": ("hosts",), "container": ("hosts",),
     "resource.host": ("hosts",), "resource": ("hosts",), "link.connects": ("hosts", "implemented"),
-    "link.protocol": ("media",), "link": ("hosts", "implemented"), "start.after": ("startable",),
-    "start.by": ("startable",), "start": ("startable",), "require.of": ("selectors",),
+    "link.protocol": ("media",), "link.owner": ("partners",), "link": ("hosts", "implemented"),
+    "start.after": ("startable",), "start.by": ("startable",), "start": ("startable",), "require.of": ("selectors",),
     "require.inputs_from": ("selectors",), "forbid.from": ("selectors",), "forbid.to": ("selectors",),
     "trigger": ("inputs",), "chain.through": ("waypoints",), "chain.requirements": ("requirements",),
     "chain": ("waypoints",),
 }
 """Which names of a project fit at a part."""
 COMMON_SECTIONS: frozenset[str] = frozenset({
-    "frames", "glossary", "libraries", "properties", "variants",
+    "frames", "generate", "glossary", "libraries", "properties", "variants",
 })
 """Sections that files of other programs may have, too."""
 WORDS: Mapping[str, tuple[str, ...]] = {
     "autoconnect": ("ports", "types"), "behaviour": ("periodic", "event", "on_demand", "once"),
     "code_language": ("python", "cpp"),
-    "declared_of[]": ("partner", "use_case", "requirement", "view", "group", "component", "component_type", "input", "output", "type", "frame", "node", "host", "container", "resource", "link", "policy", "chain"),
+    "declared_of[]": ("partner", "milestone", "use_case", "requirement", "view", "group", "component", "component_type", "input", "output", "type", "frame", "node", "host", "container", "resource", "link", "policy", "chain"),
     "direction": ("left-right", "top-bottom"), "dropped": ("kept", "forgotten"),
     "level": ("functional", "implementation"),
     "node_kind_item": ("node", "lifecycle", "composable", "driver", "nodelet", "program"),
@@ -506,7 +520,8 @@ WORDS: Mapping[str, tuple[str, ...]] = {
     "qos_reliability": ("reliable", "best_effort"), "role": ("source", "filter", "sink", "reactive"),
     "severity": ("note", "off", "warning", "error"), "start_phase": ("network", "simulators", "core", "components"),
     "start_state": ("unconfigured", "inactive", "active"), "status": ("planned", "existing"),
-    "visibility": ("public", "protected", "private"), "report.lists[]": ("figures", "tables"),
+    "visibility": ("public", "protected", "private"), "ros.discovery": ("subnet", "peers"),
+    "report.lists[]": ("figures", "tables"),
     "property_declaration.type": ("boolean", "integer", "float", "string", "date"),
     "view.colour": ("group", "owner", "role", "status", "host", "package", "tag"),
     "operation.call": ("synchronous", "asynchronous"),
@@ -515,8 +530,8 @@ WORDS: Mapping[str, tuple[str, ...]] = {
 }
 """The words of which one stands at a part."""
 PART_TYPES: Mapping[str, str] = {
-    "project.middleware": "medium", "review.backends": "texts", "review.passes": "texts", "variant.of": "variant_ids",
-    "variant.without": "text", "step.from": "step_end", "step.to": "step_end",
+    "project.middleware": "medium", "milestone.needs": "text", "review.backends": "texts", "review.passes": "texts",
+    "variant.of": "variant_ids", "variant.without": "text", "step.from": "step_end", "step.to": "step_end",
     "requirement.parent": "requirement_parents", "requirement.verified_by": "verifications",
     "requirement.use_cases": "requirement_ids", "view.show": "text", "component_node.container": "id",
     "component_node.host": "id", "input.from": "references", "input.medium": "medium", "input.frame": "frame_name",
@@ -525,9 +540,9 @@ PART_TYPES: Mapping[str, str] = {
     "type.message": "message", "type.frame": "frame_name", "frame.parent": "frame_name", "frame.by": "frame_writer",
     "promise.frame": "frame_name", "node.implements": "references", "node.container": "id", "node.host": "id",
     "topic_use.message": "message", "call_use.message": "message", "container.host": "id", "resource.host": "id",
-    "link.connects": "link_ends", "link.protocol": "medium", "start.after": "references", "start.by": "start_manager",
-    "require.of": "text", "require.inputs_from": "text", "forbid.from": "text", "forbid.to": "text",
-    "chain.through": "way", "chain.requirements": "requirement_ids",
+    "link.connects": "link_ends", "link.protocol": "medium", "link.owner": "id", "start.after": "references",
+    "start.by": "start_manager", "require.of": "text", "require.inputs_from": "text", "forbid.from": "text",
+    "forbid.to": "text", "chain.through": "way", "chain.requirements": "requirement_ids",
 }
 """The types of the parts that say more than their type."""
 ATTRIBUTES: Mapping[str, tuple[str, ...]] = {
@@ -549,7 +564,7 @@ ATTRIBUTES: Mapping[str, tuple[str, ...]] = {
 }
 """The fields of the model that hold what stands at a key, or keys of a type, where they are not called as it."""
 PLACED_KEYS: Mapping[str, tuple[str, ...]] = {
-    "view": ("show",), "component": ("role",), "component_type": ("role",),
+    "milestone": ("needs",), "view": ("show",), "component": ("role",), "component_type": ("role",),
     "input": ("medium", "type", "freshness", "frame"), "output": ("type", "medium", "frame"),
     "parameter_declaration": ("value",), "type": ("message", "frame"), "frame": ("parent",),
     "node": ("name", "kind", "command", "container"), "container": ("name",), "link": ("connects", "protocol"),
@@ -559,7 +574,7 @@ SECTION_KINDS: Mapping[str, str] = {
     "partners": "partner", "use_cases": "use_case", "requirements": "requirement", "properties": "property_declaration",
     "component_types": "component_type", "libraries": "library", "groups": "group", "nodes": "node", "types": "type",
     "hosts": "host", "containers": "container", "resources": "resource", "links": "link", "frames": "frame",
-    "chains": "chain", "views": "view", "policies": "policy", "variants": "variant",
+    "chains": "chain", "views": "view", "policies": "policy", "variants": "variant", "milestones": "milestone",
 }
 """Sections whose keys are ids of elements: the kind of these."""
 LISTED_PARTS: frozenset[str] = frozenset({
@@ -570,9 +585,9 @@ LISTED_PARTS: frozenset[str] = frozenset({
 })
 """Lists in whose place a scalar is a list of one."""
 SHORT_KEYS: Mapping[str, tuple[str, ...]] = {
-    "partner": ("title",), "variant": ("title",), "library": ("path",), "use_case": ("title",), "actor": ("title",),
-    "requirement": ("title",), "property_declaration": ("title",), "view": ("show",), "group": ("title",),
-    "component": ("title",), "component_type": ("title",), "input": ("from",), "output": ("type",),
+    "partner": ("title",), "milestone": ("date",), "variant": ("title",), "library": ("path",), "use_case": ("title",),
+    "actor": ("title",), "requirement": ("title",), "property_declaration": ("title",), "view": ("show",),
+    "group": ("title",), "component": ("title",), "component_type": ("title",), "input": ("from",), "output": ("type",),
     "type_input": ("type",), "indicator": (), "operation": ("response",), "type": ("message",), "field": ("type",),
     "constant": (), "frame": ("parent",), "node": ("implements",), "topic_use": ("topic",), "call_use": ("name",),
     "qos": ("profile",), "host": ("title",), "container": ("host",), "resource": ("host",), "link": ("connects",),
@@ -581,19 +596,97 @@ SHORT_KEYS: Mapping[str, tuple[str, ...]] = {
 """The keys that a scalar or a list in the place of an element stands for."""
 PLAIN_SECTIONS: Mapping[str, str] = {
     "partner": "partners", "use_case": "use_cases", "requirement": "requirements", "host": "hosts",
-    "container": "containers", "resource": "resources", "chain": "chains",
+    "container": "containers", "resource": "resources", "chain": "chains", "milestone": "milestones",
 }
 """Kinds of elements that are named by their id alone, not by a path, and their sections."""
 DECLARING_KEYS: Mapping[str, tuple[str, ...]] = {
-    "view": ("show",), "node": ("implements", "kind", "command", "internal"), "container": ("host",),
-    "resource": ("host",), "link": ("connects",), "policy": ("forbid", "require"), "chain": ("through",),
+    "milestone": ("date", "needs"), "view": ("show",), "node": ("implements", "kind", "command", "internal"),
+    "container": ("host",), "resource": ("host",), "link": ("connects",), "policy": ("forbid", "require"),
+    "chain": ("through",),
 }
 """Keys of which a new element has one, where any other key only adds to one."""
 ANNOTATED_KINDS: tuple[str, ...] = (
-    "partner", "use_case", "requirement", "view", "group", "component", "component_type", "input", "output", "type",
-    "frame", "node", "host", "container", "resource", "link", "policy", "chain",
+    "partner", "milestone", "use_case", "requirement", "view", "group", "component", "component_type", "input",
+    "output", "type", "frame", "node", "host", "container", "resource", "link", "policy", "chain",
 )
 """Kinds of elements that may have properties and hints."""
+OTHER_WORDS: Mapping[str, Mapping[str, str]] = {
+    "group": {
+        "partner": "owner", "responsible": "owner", "lead": "owner", "maintainer": "owner", "author": "owner",
+        "team": "owner", "members": "components", "parts": "components", "modules": "components",
+    },
+    "component": {
+        "purpose": "functionality", "task": "functionality", "does": "functionality", "function": "functionality",
+        "partner": "owner", "responsible": "owner", "maintainer": "owner", "author": "owner", "team": "owner",
+        "type": "is", "class": "is", "extends": "is", "in": "inputs", "receives": "inputs", "reads": "inputs",
+        "consumes": "inputs", "needs": "inputs", "depends": "inputs", "dependencies": "inputs", "depends_on": "inputs",
+        "requires": "inputs", "out": "outputs", "sends": "outputs", "produces": "outputs", "emits": "outputs",
+        "writes": "outputs",
+    },
+    "input": {
+        "source": "from", "reads": "from", "connect": "from", "connects": "from", "connection": "from",
+        "max_age": "freshness", "age": "freshness", "frame_id": "frame",
+    },
+    "output": {
+        "target": "to", "targets": "to", "frame_id": "frame",
+    },
+    "node": {
+        "component": "implements", "components": "implements", "realizes": "implements", "realises": "implements",
+        "pkg": "package", "ros_package": "package", "exe": "executable", "exec": "executable", "binary": "executable",
+        "script": "executable", "program": "executable", "class": "plugin", "composable": "plugin", "lang": "language",
+        "args": "arguments", "params": "parameters", "params_file": "parameter_files",
+        "params_files": "parameter_files", "parameter_file": "parameter_files", "config": "parameter_files",
+        "ns": "namespace", "machine": "host", "computer": "host", "runs_on": "host", "publishers": "publishes",
+        "pub": "publishes", "pubs": "publishes", "publish": "publishes", "subscribers": "subscribes",
+        "sub": "subscribes", "subs": "subscribes", "subscribe": "subscribes", "subscriptions": "subscribes",
+        "services": "serves", "actions": "serves", "servers": "serves", "provides": "serves",
+        "action_servers": "serves", "clients": "calls", "uses": "calls", "service_clients": "calls",
+        "action_clients": "calls", "remap": "remaps", "remappings": "remaps",
+    },
+    "topic_use": {
+        "quality": "qos", "qos_profile": "qos",
+    },
+    "type": {
+        "msg": "message", "msg_type": "message", "message_type": "message", "ros_type": "message",
+        "ros_message": "message", "service": "message", "srv": "message", "action": "message", "interface": "message",
+        "type": "message", "definition": "message", "bytes": "size", "description": "comment", "doc": "comment",
+    },
+    "qos": {
+        "queue": "depth", "queue_size": "depth",
+    },
+    "timing": {
+        "frequency": "rate", "freq": "rate", "hz": "rate", "publish_rate": "rate", "execution_time": "wcet",
+        "exec_time": "wcet", "duration": "wcet", "worst_case": "wcet", "worst_case_execution_time": "wcet",
+        "runtime": "wcet", "best_case": "bcet", "best_case_execution_time": "bcet", "cpus": "cores",
+        "affinity": "cores", "cpu_affinity": "cores", "cpu": "core", "prio": "priority",
+    },
+    "host": {
+        "cpus": "cores", "cpu": "cores", "cpu_cores": "cores", "processors": "cores", "ip": "address",
+        "ip_address": "address", "hostname": "address", "name": "title",
+    },
+    "link": {
+        "from": "connects", "to": "connects", "between": "connects", "hosts": "connects", "nodes": "connects",
+        "ends": "connects", "endpoints": "connects", "joins": "connects", "speed": "bandwidth", "capacity": "bandwidth",
+        "throughput": "bandwidth", "data_rate": "bandwidth", "delay": "latency", "type": "protocol",
+        "medium": "protocol", "kind": "protocol",
+    },
+    "chain": {
+        "from": "through", "to": "through", "path": "through", "steps": "through", "elements": "through",
+        "components": "through", "nodes": "through", "via": "through", "hops": "through", "route": "through",
+        "latency": "deadline", "max_latency": "deadline", "budget": "deadline", "limit": "deadline",
+        "end_to_end": "deadline", "description": "title",
+    },
+    "partner": {
+        "email": "contact", "mail": "contact", "url": "contact", "website": "contact", "github": "reviewers",
+        "gitlab": "reviewers", "handle": "reviewers", "handles": "reviewers", "people": "reviewers",
+        "members": "reviewers",
+    },
+    "requirement": {
+        "text": "description", "statement": "description", "test": "verified_by", "tests": "verified_by",
+        "verification": "verified_by",
+    },
+}
+"""What people call the keys of a kind elsewhere."""
 SUPPORTING_KEYS: Mapping[str, tuple[str, ...]] = {
     "component": ("contact", "hints", "image", "layout", "node", "owner", "parameters", "properties", "requirements", "status", "tags", "timing", "urls"),
 }

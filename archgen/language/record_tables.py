@@ -15,7 +15,7 @@ RECORD_SECTIONS: Mapping[str, str] = {
     "components": "component{}", "composed": "composed{}", "component_types": "component_type{}",
     "connections": "connection[]", "edges": "edge[]", "nodes": "node{}", "topics": "topic[]", "channels": "channel[]",
     "types": "type{}", "hosts": "host{}", "containers": "container{}", "resources": "resource{}", "links": "link{}",
-    "frames": "frame{}", "chains": "chain{}", "variants": "variant{}",
+    "frames": "frame{}", "chains": "chain{}", "variants": "variant{}", "milestones": "milestone{}",
 }
 """The members of the record in their order, and what stands there."""
 LASTING_SECTIONS: frozenset[str] = frozenset({
@@ -25,8 +25,8 @@ LASTING_SECTIONS: frozenset[str] = frozenset({
 """Those that are written where they are empty, too."""
 RECORD_KEYS: Mapping[str, Mapping[str, str]] = {
     "project": {
-        "id": "", "title": "", "version": "", "description": "", "middleware": "", "distro": "", "parameters": "",
-        "environment": "",
+        "id": "", "title": "", "version": "", "description": "", "license": "", "middleware": "", "distro": "",
+        "parameters": "", "environment": "", "discovery": "",
     },
     "partner": {
         "title": "", "description": "", "contact": "", "reviewers": "", "properties": "annotations",
@@ -96,7 +96,7 @@ RECORD_KEYS: Mapping[str, Mapping[str, str]] = {
         "part_fields": "part_fields", "constants": "constant{}", "properties": "annotations", "hints": "annotations",
     },
     "host": {
-        "title": "", "description": "", "cores": "", "tags": "", "scheduling": "", "environment": "",
+        "title": "", "description": "", "cores": "", "tags": "", "scheduling": "", "address": "", "environment": "",
         "properties": "annotations", "hints": "annotations",
     },
     "container": {
@@ -108,7 +108,7 @@ RECORD_KEYS: Mapping[str, Mapping[str, str]] = {
     },
     "link": {
         "title": "", "connects": "", "devices": "", "protocol": "", "bandwidth": "bit/s", "best": "ns", "worst": "ns",
-        "properties": "annotations", "hints": "annotations",
+        "owner": "", "properties": "annotations", "hints": "annotations",
     },
     "frame": {
         "title": "", "parent": "", "by": "", "rate": "Hz", "static": "flag", "properties": "annotations",
@@ -120,6 +120,9 @@ RECORD_KEYS: Mapping[str, Mapping[str, str]] = {
     },
     "variant": {
         "title": "", "description": "", "of": "", "without": "", "drop": "", "changes": "",
+    },
+    "milestone": {
+        "title": "", "description": "", "date": "", "needs": "", "properties": "annotations", "hints": "annotations",
     },
     "step": {
         "from": "step_place", "to": "step_place", "say": "", "outputs": "", "inputs": "",

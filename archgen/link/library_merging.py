@@ -6,7 +6,6 @@ import posixpath
 import re
 from collections.abc import Sequence
 
-from archgen.compose.library_types import list_libraries
 from archgen.diagnostics.diagnostic import Diagnostic
 from archgen.link import mapping_values
 from archgen.link.slice_merging import merge_documents
@@ -24,7 +23,7 @@ def merge_libraries(
     if not libraries:
         return root, ()
     diagnostics: list[Diagnostic] = []
-    bodies = {library.key: library for library in list_libraries(root)}
+    bodies = {library.key: library for library in list_entries(root, "libraries")}
     for library in libraries:
         entry = bodies.get(library.id)
         if entry is not None and isinstance(entry.value, MappingNode):

@@ -9,6 +9,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 
 from archgen.frozen import NamedTuple
+from archgen.link.reference_listening import HeardReference
 from archgen.link.reference_resolution import Answer, NameList
 from archgen.model.component import Component, Output
 from archgen.model.known_parts import KnownParts
@@ -40,6 +41,7 @@ class LinkedLeaf(NamedTuple):
     names: NameList | None
     answers: tuple[Answer, ...]
     component: Component
+    references: tuple[HeardReference, ...] | None = None
 
 
 class LinkedNode(NamedTuple):
@@ -53,6 +55,7 @@ class LinkedNode(NamedTuple):
     names: NameList | None
     answers: tuple[Answer, ...]
     node: Node
+    references: tuple[HeardReference, ...] | None = None
 
 
 class LinkMemory:

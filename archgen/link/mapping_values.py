@@ -5,7 +5,7 @@ Types are compared with `type(...) is`, not isinstance: these functions run for 
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from functools import lru_cache
 from typing import get_args
 
@@ -146,10 +146,15 @@ def list_hint_places(hints: MappingNode) -> Iterator[tuple[tuple[str | int, ...]
                 waiting.append(((*path, number), item))
 
 
-def iterate_elements(mapping: MappingNode, key: str) -> Iterator[tuple[str, MappingEntry, MappingNode]]:
-    """Yield the elements of a section: id, entry and body."""
-    for entry in get_mapping(mapping, key):
-        yield entry.key, entry, get_body(entry)
+def iterate_elements(mapping: MappingNode, key: str) -> Iterable[tuple[str, MappingEntry, MappingNode]]:
+    """Return the elements of a section: id, entry and body."""
+    # Nine in ten sections are not there, and a generator for each would take longer than what it finds.
+    section = mapping.entries.get(key)
+    return (
+        [(each.key, each, get_body(each)) for each in section.value]
+        if section and type(section.value) is MappingNode
+        else ()
+    )
 
 
 def get_layout(mapping: MappingNode, key: str) -> DiagramLayout:

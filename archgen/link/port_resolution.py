@@ -42,9 +42,12 @@ class PortResolver:
             return key if self.is_free else None
         # The usual case, one component and the plain name of a port, needs no look-up of its own.
         if len(self.component_ids) == 1 and key in self.port_names[kind].get(self.component_ids[0], ()):
-            return f"{self.component_ids[0]}.{key}"
+            port_id = f"{self.component_ids[0]}.{key}"
+            self.resolver.tell(span, key, kind, port_id, self.owner_id)
+            return port_id
         match = self.names.resolve_path(key, (kind,))
         if match.count == 1:
+            self.resolver.tell(span, key, *match.elements[0], self.owner_id)
             return match.elements[0].id
         if match.count:
             self.resolver.suspect_ids.update(name.id for name in match.elements)

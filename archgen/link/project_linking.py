@@ -29,6 +29,7 @@ from archgen.link.element_outline import ElementOutline, build_outline, diagnose
 from archgen.link.link_memory import LinkMemory
 from archgen.link.merged_timing import TimingMerger, find_shared_components
 from archgen.link.parameter_texts import flatten_parameters
+from archgen.link.reference_listening import HeardReferences
 from archgen.link.reference_resolution import SECTIONS_OF_PLAIN_NAMES, ReferenceResolver
 from archgen.model.architecture import Architecture
 from archgen.model.component import PATTERN_GROUP, TypePatterns
@@ -49,13 +50,15 @@ def link_project(  # noqa: PLR0913 - all by name
     damaged_elements: frozenset[str] = frozenset(),
     is_partial: bool = False,
     memory: LinkMemory | None = None,
+    heard: HeardReferences | None = None,
 ) -> tuple[Architecture, tuple[Diagnostic, ...]]:
     """Return the architecture of a project's merged slices. What cannot be resolved is left out and reported.
 
     `default_id` and `default_title` are used where the project states none. `lost_keys` are the keys of what could not
     be read: what they may declare is not reported as unknown, and neither is what may stand in `damaged_elements`, in
     which something could not be read. `is_partial` is whether a whole file or section was lost. What
-    `memory` knows from another version of the project is taken over where it is the same.
+    `memory` knows from another version of the project is taken over where it is the same. What references mean is
+    added to `heard`.
     """
     # Each step takes what the steps before it returned. Ids come first (the outline), then types, because which outputs
     # carry messages decides what a reference to a whole component brings; nodes inherit hosts, owners and timing from
@@ -68,6 +71,7 @@ def link_project(  # noqa: PLR0913 - all by name
     if lost_keys or damaged_elements or not expansion.is_plain:
         memory = None  # what could not be read, and what stands around a component, has a say in too many things
     resolver = make_resolver(root, element_outline, diagnostics, lost_keys, damaged_elements, memory)
+    resolver.heard = heard
     parameters = HandedParameters(element_outline, diagnostics)
     declared_groups = declare_groups(element_outline, resolver, types, parameters, memory)
     components, shells = declared_groups.components, declared_groups.shells
@@ -103,6 +107,7 @@ def link_project(  # noqa: PLR0913 - all by name
         shared_topics=mapping_values.get_texts(ros_section, "shared_topics"),
         ros_parameters=tuple(flatten_parameters(mapping_values.get_mapping(ros_section, "parameters"))),
         ros_environment=tuple(mapping_values.list_placed_texts(ros_section, "environment")),
+        ros_discovery=mapping_values.get_text(ros_section, "discovery"),
         layout=mapping_values.get_layout(root, "layout"),
         **declared_sections,
         use_cases=use_cases,
@@ -127,6 +132,7 @@ def link_project(  # noqa: PLR0913 - all by name
         glossary=glossary,
         review=section_declaration.declare_review(root),
         conform=section_declaration.declare_conform(root),
+        generate=section_declaration.declare_generate(root),
         repository=section_declaration.declare_repository(root),
         interfaces=interfaces,
         partial=is_partial,
@@ -173,10 +179,12 @@ _OUTER_SECTIONS = ("component_types", "libraries", "types", "ros", "project")
 """What a type may refer to. Nodes, chains and the like are about instances."""
 
 
-def link_type_patterns(merged_table: MappingNode, architecture: Architecture) -> TypePatterns:
+def link_type_patterns(
+    merged_table: MappingNode, architecture: Architecture, heard: HeardReferences | None = None
+) -> TypePatterns:
     """Return what the component types of a project say, nothing for a project without any.
 
-    What is wrong in them was reported where the project was linked.
+    What is wrong in them was reported where the project was linked. What their references mean is added to `heard`.
     """
     if not architecture.component_types:
         return TypePatterns()
@@ -189,7 +197,7 @@ def link_type_patterns(merged_table: MappingNode, architecture: Architecture) ->
         for name, component_type in architecture.component_types.items()
     }
     expansion = expand_project(_write_patterns(outer_entries, type_bodies))
-    patterns = _link_expansion(expansion, architecture)
+    patterns = _link_expansion(expansion, architecture, heard)
     components = {**patterns.components, **patterns.shells}
     return TypePatterns(
         {component_id.removeprefix(f"{PATTERN_GROUP}."): component for component_id, component in components.items()},
@@ -208,7 +216,9 @@ def _nest_mapping(value: MappingNode, key: str) -> MappingNode:
     return MappingNode({key: MappingEntry(key, NO_SPAN, value)}, NO_SPAN)
 
 
-def _link_expansion(expansion: ExpandedProject, architecture: Architecture) -> Architecture:
+def _link_expansion(
+    expansion: ExpandedProject, architecture: Architecture, heard: HeardReferences | None
+) -> Architecture:
     patterns, _ = link_project(
         expansion,
         build_outline(expansion),
@@ -216,5 +226,6 @@ def _link_expansion(expansion: ExpandedProject, architecture: Architecture) -> A
         default_title=architecture.project.title,
         declared_types=DeclaredTypes(architecture.types),
         interfaces=architecture.interfaces,
+        heard=heard,
     )
     return patterns

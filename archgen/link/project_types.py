@@ -14,7 +14,6 @@ from typing import Any
 
 from archgen import resources
 from archgen.compose import ExpandedProject
-from archgen.compose.library_types import list_libraries
 from archgen.diagnostics.diagnostic import Diagnostic, diagnose_repetition
 from archgen.frozen import NamedTuple, replace
 from archgen.link import mapping_values
@@ -26,7 +25,15 @@ from archgen.model import quantity
 from archgen.model.known_interfaces import guess_distro
 from archgen.model.message_types import ConceptualType
 from archgen.project import LoadedProject
-from archgen.syntax.yaml_tree import MappingEntry, MappingNode, ScalarNode, SequenceNode, YamlNode, node_to_data
+from archgen.syntax.yaml_tree import (
+    MappingEntry,
+    MappingNode,
+    ScalarNode,
+    SequenceNode,
+    YamlNode,
+    list_entries,
+    node_to_data,
+)
 
 
 def declare_project_types(
@@ -135,13 +142,13 @@ def list_message_packages(root: MappingNode) -> dict[str, str]:
     """Return the packages of the messages that the types of libraries define, by library."""
     return {
         library.key: mapping_values.get_text(mapping_values.get_body(library), "package") or f"{library.key}_msgs"
-        for library in list_libraries(root)
+        for library in list_entries(root, "libraries")
     }
 
 
 def _list_library_types(root: MappingNode) -> dict[str, list[_LibraryType]]:
     library_types: dict[str, list[_LibraryType]] = {}
-    for library in list_libraries(root):
+    for library in list_entries(root, "libraries"):
         for key, entry, _ in mapping_values.iterate_elements(mapping_values.get_body(library), "types"):
             name = mapping_values.normalise_type_name(key)
             library_types.setdefault(name, []).append(_LibraryType(library.key, entry))

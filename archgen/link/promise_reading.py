@@ -113,18 +113,23 @@ def read_deprecation(holder: MappingNode, element_id: str, diagnostics: list[Dia
     if entry is None or not isinstance(entry.value, MappingNode):
         return None
     body = entry.value
-    until = mapping_values.get_text(body, "until")
-    if until is not None and not _is_day(until):
-        message = f"there is no day `{until}`"
-        help_line = "a day is year, month and day, such as `2027-03-01`"
-        diagnostics.append(_diagnose_value(message, mapping_values.get_span(body, "until"), help_line, element_id))
-        until = None
     return Deprecation(
-        until=until,
+        until=read_day(body, "until", element_id, diagnostics),
         use=mapping_values.get_text(body, "use"),
         at=entry.key_span,
         use_at=mapping_values.get_span(body, "use"),
     )
+
+
+def read_day(body: MappingNode, key: str, element_id: str, diagnostics: list[Diagnostic]) -> str | None:
+    """Return a day as YYYY-MM-DD; one that no calendar has is reported."""
+    text = mapping_values.get_text(body, key)
+    if text is None or _is_day(text):
+        return text
+    help_line = "a day is year, month and day, such as `2027-03-01`"
+    span = mapping_values.get_span(body, key)
+    diagnostics.append(_diagnose_value(f"there is no day `{text}`", span, help_line, element_id))
+    return None
 
 
 def _is_day(text: str) -> bool:

@@ -16,6 +16,7 @@ from archgen.frozen import NamedTuple, dataclass, field, replace
 from archgen.language.language_tables import PLAIN_SECTIONS
 from archgen.link import mapping_values
 from archgen.link.path_guesses import PathGuesser, list_possible_kinds
+from archgen.link.reference_listening import HeardReference, HeardReferences
 from archgen.model.path_resolver import NO_MATCH, ElementRef, PathIndex, PathMatch, PathResolver
 from archgen.syntax.yaml_tree import MappingNode, ScalarNode
 
@@ -73,6 +74,8 @@ class HeardAnswers:
     """What was resolved for one element."""
 
     answers: list[Answer]
+    references: tuple[HeardReference, ...] | None = None
+    """The same as a listener hears it, None where there is none."""
     is_flawless: bool = False
     """Whether nothing was found fault with."""
 
@@ -98,6 +101,8 @@ class ReferenceResolver:
     """All names of this version, where somebody remembers them: the same object for another one with the same names."""
     answers: list[Answer] | None = None
     """What was resolved since somebody began to listen, None where nobody does."""
+    heard: HeardReferences | None = None
+    """Where what is resolved is told, None where nobody asks where references stand."""
     names: PathResolver = field(init=False)
     guesser: PathGuesser = field(init=False)
     _is_finished: bool = False
@@ -158,7 +163,20 @@ class ReferenceResolver:
                 self._warn_hidden(reference, target, hidden_elements, element_id)
         if self.answers is not None:
             self.answers.append(Answer(dotted_path, tuple(kinds), component_id, target))
+        if target is not None:
+            self.tell(reference.span, dotted_path, *target, element_id)
         return target
+
+    def tell(self, span: Span, text: str, kind: str, target_id: str, writer: str) -> None:
+        """Tell who listens which element a reference means."""
+        if self.heard is not None:
+            self.heard.append(HeardReference(span, kind, target_id, text, writer))
+
+    def tell_again(self, references: tuple[HeardReference, ...] | None) -> bool:
+        """Tell what was heard of a part that is taken over; return whether that is possible: somebody listened then."""
+        if self.heard is not None and references is not None:
+            self.heard.extend(references)
+        return self.heard is None or references is not None
 
     def report_ambiguous(self, reference: ScalarNode, match: PathMatch, element_id: str) -> None:
         """Report a reference that can mean several elements."""
@@ -170,9 +188,11 @@ class ReferenceResolver:
         """Note what is resolved, and whether anything is found fault with."""
         heard = HeardAnswers([])
         counts = len(self.diagnostics), len(self.suspect_ids)
+        told_count = len(self.heard or ())
         self.answers = heard.answers
         yield heard
         self.answers = None
+        heard.references = tuple(self.heard[told_count:]) if self.heard is not None else None
         heard.is_flawless = counts == (len(self.diagnostics), len(self.suspect_ids))
 
     def gives_answers(self, answers: Iterable[Answer], names: NameList | None) -> bool:
@@ -213,6 +233,7 @@ class ReferenceResolver:
         if reference.text in known_spans:
             if self.answers is not None:
                 self.answers.append(Answer(reference.text, (kind,)))
+            self.tell(reference.span, reference.text, kind.replace(" ", "_"), reference.text, element_id)
             return reference.text
         if self.is_lost(reference.text) or SECTIONS_OF_PLAIN_NAMES[kind] in self.lost_keys:
             return None

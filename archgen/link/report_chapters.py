@@ -14,6 +14,7 @@ import binascii
 import posixpath
 import re
 from collections.abc import Iterator, Mapping
+from functools import lru_cache
 from urllib.parse import quote, unquote
 
 from archgen.diagnostics.diagnostic import Diagnostic, Rule, Severity
@@ -99,8 +100,13 @@ class ShownPicture(NamedTuple):
     end_line: int
 
 
-def find_shown_pictures(markdown: str) -> Iterator[ShownPicture]:
-    """Yield the pictures in a Markdown text, without those with a scheme (`https:`)."""
+@lru_cache(maxsize=256)
+def find_shown_pictures(markdown: str) -> tuple[ShownPicture, ...]:
+    """Return the pictures in a Markdown text, without those with a scheme (`https:`); a build asks for them four times."""
+    return tuple(_list_shown_pictures(markdown))
+
+
+def _list_shown_pictures(markdown: str) -> Iterator[ShownPicture]:
     from markdown_it import MarkdownIt
 
     for block in MarkdownIt("commonmark", {"html": False}).parse(markdown):

@@ -93,12 +93,16 @@ class SourceReferences:
     def _settle_match(self, reference: ScalarNode, match: PathMatch, writer_id: str) -> ElementRef | None:
         if match.unique_element is None:
             self._resolver.report_ambiguous(reference, match, writer_id)
+            return None
+        self._resolver.tell(reference.span, reference.text, *match.unique_element, writer_id)
         return match.unique_element
 
     def _resolve_self(self, reference: ScalarNode, shell_id: str | None, writer_id: str) -> ElementRef | None:
         name = reference.text.removeprefix(f"{SELF}.")
         if shell_id is not None and name in self._outline.inputs[shell_id]:
-            return ElementRef("input", f"{shell_id}.{name}")
+            target = ElementRef("input", f"{shell_id}.{name}")
+            self._resolver.tell(reference.span, reference.text, *target, writer_id)
+            return target
         if shell_id is None:
             message = f"`{reference.text}` names the component around `{writer_id}`, but there is none"
             help_line: str | None = "name the output that it comes from"
@@ -119,6 +123,7 @@ class SourceReferences:
         inner_target = None if match.count else self._find_inside(path)
         if inner_target is not None:
             self._warn_inside(reference, path, writer_id)
+            self._resolver.tell(reference.span, path, *inner_target, writer_id)
             return inner_target
         inside = NO_MATCH if match.count else self._resolver.names.resolve_path(path, ("component", "output"))
         if inside.count:

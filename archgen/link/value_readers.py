@@ -233,6 +233,7 @@ VALUE_READERS: Mapping[str, ValueReader | None] = {
             "parameter_declaration.from",
             "forge",
             "repository_address",
+            "host_address",
             "signature.revision",
             "version_digits",
         ),

@@ -3,20 +3,21 @@
 from __future__ import annotations
 
 import posixpath
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
 from pathlib import Path
 
 from archgen import git, pipeline, project
 from archgen.diagnostics.diagnostic import Diagnostic, Severity
 from archgen.diagnostics.finding_identity import FindingIdentity, identify_finding
-from archgen.frozen import dataclass, field, replace
+from archgen.frozen import NamedTuple, dataclass, field, replace
 from archgen.git import GitError
 from archgen.git.merged_trees import MergeFolder, PathConflict, open_merge_folder
 from archgen.git.repository_lookup import look_up_tree
 from archgen.merge.double_renames import find_double_renames
 from archgen.merge.file_merge import merge_contents
+from archgen.merge.renamed_keys import follow_renames
 from archgen.merge.slice_reading import read_normal_tree
-from archgen.merge.tree_merge import MergeConflictError, merge_values, read_merged_value
+from archgen.merge.tree_merge import EMPTY_MAPPING, MergeConflictError, merge_values, read_merged_value
 from archgen.model.review_settings import BreakPolicy
 from archgen.pipeline import CheckedProject, VersionCache
 from archgen.project import TrackedProject
@@ -27,10 +28,14 @@ from archgen.syntax.yaml_tree import find_value
 
 @dataclass(frozen=True, slots=True)
 class FileConflict:
-    """A file of the project that git conflicts in; `problem` is what people have to settle, None for nothing."""
+    """A file of the project that git conflicts in; `problem` is what people have to settle, None for nothing.
+
+    `is_followed`: what it takes is to follow what one side renamed or moved.
+    """
 
     file: str
     problem: str | None = None
+    is_followed: bool = False
 
 
 @dataclass(frozen=True, slots=True)
@@ -53,6 +58,34 @@ BreakFinder = Callable[[CheckedProject, CheckedProject, CheckedProject, CheckedP
 """Says what two sides break only together, from what both began with, ours, theirs, and both merged."""
 
 
+FollowedVersion = tuple[CheckedProject, Mapping[str, bytes | None]]
+"""A version with the names and places that the other side gave its elements, and the files that differ for it (None: gone)."""
+
+
+@dataclass(frozen=True, slots=True)
+class FollowedBranches:
+    """Three versions in which each element is called and placed as the sides want it; `told` says what that is."""
+
+    base: FollowedVersion
+    ours: FollowedVersion
+    theirs: FollowedVersion
+    told: tuple[str, ...]
+
+
+BranchFollower = Callable[
+    [CheckedProject, CheckedProject, CheckedProject], tuple[FollowedBranches | None, tuple[FileConflict, ...]]
+]
+"""Follows in each version what a side renamed or moved; of what began with, ours, theirs."""
+
+
+@dataclass(frozen=True, slots=True)
+class BranchJudges:
+    """What is asked about branches from above this room."""
+
+    find_breaks: BreakFinder
+    follow: BranchFollower
+
+
 @dataclass(frozen=True, slots=True)
 class BranchMerge:
     """What the main line would be with some branches merged into it.
@@ -67,6 +100,8 @@ class BranchMerge:
     new_findings: tuple[Diagnostic, ...] = ()
     checked_project: CheckedProject | None = None
     joint_breaks: JointBreaks = field(default_factory=JointBreaks)
+    followed: tuple[str, ...] = ()
+    """What one side renamed or moved and the other one followed, in sentences."""
 
     @property
     def branches(self) -> tuple[str, ...]:
@@ -131,15 +166,45 @@ class _MergeState:
     parts: tuple[_MergeState, ...] = ()
 
 
+class _FollowedStates(NamedTuple):
+    """Both sides with what either of them renamed or moved, in commits that begin with one in which it is so, too."""
+
+    ours: _MergeState
+    theirs: _MergeState
+    told: tuple[str, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class MergedBranch:
+    """A branch merged into what is checked out, as a commit of the merge folder; `unmerged` are the files that hold markers."""
+
+    branch_merge: BranchMerge
+    commit: str
+    unmerged: tuple[PathConflict, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class _MergedFiles:
+    """The tree of what was merged file by file, with markers where people have to settle something."""
+
+    tree: str
+    conflicts: tuple[FileConflict, ...]
+    unmerged: tuple[PathConflict, ...]
+
+    @property
+    def is_blocked(self) -> bool:
+        return any(conflict.problem for conflict in self.conflicts)
+
+
 class BranchMerger:
     """Merges branches of one project. All that is read is read once."""
 
-    def __init__(self, tracked_project: TrackedProject, merge_folder: MergeFolder, find_breaks: BreakFinder) -> None:
+    def __init__(self, tracked_project: TrackedProject, merge_folder: MergeFolder, judges: BranchJudges) -> None:
         self._merge_folder = merge_folder
         self._tracked_project = tracked_project
         self._merged_project = TrackedProject(merge_folder.objects, tracked_project.locations)
         self._version_cache = VersionCache()
-        self._find_breaks = find_breaks
+        self._judges = judges
         self._checked_trees: dict[str, CheckedProject | None] = {}
 
     def read_state(self, revision: str, branches: tuple[str, ...]) -> _MergeState:
@@ -175,31 +240,153 @@ class BranchMerger:
 
         Unless `is_checked` only conflicts of files are asked for: checking and comparing takes most of the time.
         """
+        files = self._merge_files(ours, theirs)
+        told: tuple[str, ...] = ()
+        our_side, their_side = ours, theirs
+        if files.is_blocked and is_checked:
+            followed = self._follow(ours, theirs)
+            if isinstance(followed, _FollowedStates):
+                followed_files = self._merge_files(followed.ours, followed.theirs)
+                if not followed_files.is_blocked:
+                    our_side, their_side, told = followed
+                    needless = (FileConflict(each.file, is_followed=bool(each.problem)) for each in files.conflicts)
+                    files = replace(followed_files, conflicts=tuple(needless))
+        return self._judge_files((ours, theirs), (our_side, their_side), files, told, is_checked=is_checked)
+
+    def _judge_files(
+        self,
+        states: tuple[_MergeState, _MergeState],
+        followed_states: tuple[_MergeState, _MergeState],
+        files: _MergedFiles,
+        told: tuple[str, ...],
+        *,
+        is_checked: bool,
+    ) -> tuple[BranchMerge, _MergeState | None]:
+        ours, theirs = states
         branches, sides = (*ours.branches, *theirs.branches), (ours.branches, theirs.branches)
-        tree_merge = self._merge_folder.merge_commits(ours.commit, theirs.commit)
-        settled_contents, conflicts = {}, []
-        for conflict in tree_merge.conflicts:
-            content, problem = self._settle_conflict(conflict, ours, theirs)
-            conflicts.append(FileConflict(conflict.path, problem))
-            if problem is None:
-                settled_contents[conflict.path] = (conflict.mode, content)
-        if any(conflict.problem for conflict in conflicts):
-            return BranchMerge(sides, tuple(conflicts)), None
-        tree = self._merge_folder.replace_files(tree_merge.tree, settled_contents)
+        if files.is_blocked:
+            return BranchMerge(sides, files.conflicts), None
         checked_project = ours.checked_project
         if is_checked:
-            checked_project = self._check_commit(tree, " + ".join(branches), is_kept=not ours.branches)
-        joint_breaks, double_renames = self._judge_merge(ours, theirs, checked_project)
+            checked_project = self._check_commit(files.tree, " + ".join(branches), is_kept=not ours.branches)
+        joint_breaks, double_renames = self._judge_merge(*followed_states, checked_project)
         if double_renames:
-            return BranchMerge(sides, (*conflicts, *double_renames)), None
-        known_findings = ours.known_findings | theirs.known_findings
+            return BranchMerge(sides, (*files.conflicts, *double_renames)), None
+        known_findings = frozenset[FindingIdentity]().union(
+            *(each.known_findings for each in (*states, *followed_states))
+        )
         findings = checked_project.findings if checked_project else ()
         new_findings = tuple(each for each in findings if identify_finding(each) not in known_findings)
-        branch_merge = BranchMerge(sides, tuple(conflicts), new_findings, checked_project, joint_breaks)
-        commit = self._merge_folder.commit_tree(tree, (ours.commit, theirs.commit))
+        branch_merge = BranchMerge(sides, files.conflicts, new_findings, checked_project, joint_breaks, told)
+        commit = self._merge_folder.commit_tree(files.tree, (ours.commit, theirs.commit))
         known_findings |= _identify_findings(checked_project)
         parts = (*(ours.parts or (ours,)), theirs)
         return branch_merge, _MergeState(branches, commit, known_findings, checked_project, parts)
+
+    def _merge_files(self, ours: _MergeState, theirs: _MergeState, *, merges_all: bool = False) -> _MergedFiles:
+        """Merge the files of two states; with `merges_all` also those by what they say in which git sees no conflict."""
+        tree_merge = self._merge_folder.merge_commits(ours.commit, theirs.commit)
+        unmerged = list(tree_merge.conflicts)
+        if merges_all:
+            unmerged += self._list_changed_twice(ours, theirs, {conflict.path for conflict in unmerged})
+        contents: dict[str, tuple[str, bytes | None]] = {}
+        conflicts, left = [], []
+        for conflict in unmerged:
+            content, problem = self._settle_conflict(conflict, ours, theirs)
+            conflicts.append(FileConflict(conflict.path, problem))
+            if problem is None or (content and all(conflict.blobs[1:])):
+                contents[conflict.path] = (conflict.mode, content)
+            if problem is not None:
+                left.append(conflict)
+        tree = self._merge_folder.replace_files(tree_merge.tree, contents)
+        return _MergedFiles(tree, tuple(conflicts), tuple(left))
+
+    def _list_changed_twice(
+        self, ours: _MergeState, theirs: _MergeState, known_paths: Collection[str]
+    ) -> Iterator[PathConflict]:
+        """Yield the slices that both sides changed."""
+        fork = self._find_fork(ours, theirs)
+        if fork is None:
+            return
+        objects = self._merge_folder.objects
+        base, our, their = (objects.list_tree(each) or {} for each in (fork.commit_id, ours.commit, theirs.commit))
+        for path in base.keys() & our.keys() & their.keys() - known_paths:
+            blobs = base[path].object_id, our[path].object_id, their[path].object_id
+            if path.endswith(YAML_ENDINGS) and len(set(blobs)) == len(blobs):
+                yield PathConflict(path, our[path].mode, blobs)
+
+    def _follow(self, ours: _MergeState, theirs: _MergeState) -> _FollowedStates | tuple[FileConflict, ...] | None:
+        """Return both sides with what either of them renamed or moved, or what contradicts; None where there is nothing."""
+        fork = self._find_fork(ours, theirs)
+        base_project = self._check_base(ours, theirs)
+        if fork is None or base_project is None or ours.checked_project is None or theirs.checked_project is None:
+            return None
+        followed, conflicts = self._judges.follow(base_project, ours.checked_project, theirs.checked_project)
+        if followed is None:
+            return tuple(
+                replace(each, file=self._path_in_repository(each.file) if each.file else "") for each in conflicts
+            )
+        base_commit = self._commit_followed(fork.commit_id, followed.base, ())
+        our_state, their_state = (
+            replace(
+                state,
+                commit=self._commit_followed(state.commit, version, (base_commit,)),
+                checked_project=version[0],
+                known_findings=_identify_findings(version[0]),
+            )
+            for state, version in ((ours, followed.ours), (theirs, followed.theirs))
+        )
+        return _FollowedStates(our_state, their_state, followed.told)
+
+    def _commit_followed(self, commit: str, version: FollowedVersion, parents: tuple[str, ...]) -> str:
+        entries = self._merge_folder.objects.list_tree(commit) or {}
+        contents: dict[str, tuple[str, bytes | None]] = {}
+        for file, content in version[1].items():
+            path = self._path_in_repository(file)
+            contents[path] = (entries[path].mode if path in entries else "100644", content)
+        return self._merge_folder.commit_tree(self._merge_folder.replace_files(f"{commit}^{{tree}}", contents), parents)
+
+    def merge_branch(self, ours: _MergeState, theirs: _MergeState) -> MergedBranch:
+        """Merge `theirs` into `ours`, with what either of them renamed or moved done in the other one, too; prove that what
+        comes out says what both say, and no more.
+        """
+        followed = self._follow(ours, theirs)
+        if followed is not None and not isinstance(followed, _FollowedStates) and followed:
+            files = self._merge_files(ours, theirs, merges_all=True)
+            branch_merge = BranchMerge((ours.branches, theirs.branches), (*followed, *files.conflicts))
+            return self._finish(branch_merge, files, ours, theirs)
+        our_side, their_side, told = followed if isinstance(followed, _FollowedStates) else (ours, theirs, ())
+        files = self._merge_files(our_side, their_side, merges_all=True)
+        if not files.is_blocked:
+            files = replace(files, conflicts=tuple(self._find_contradictions(our_side, their_side, files.tree)))
+        branch_merge, _ = self._judge_files((ours, theirs), (our_side, their_side), files, told, is_checked=True)
+        return self._finish(branch_merge, files, ours, theirs)
+
+    def _finish(
+        self, branch_merge: BranchMerge, files: _MergedFiles, ours: _MergeState, theirs: _MergeState
+    ) -> MergedBranch:
+        commit = self._merge_folder.commit_tree(files.tree, (ours.commit, theirs.commit))
+        conflicts = tuple(each for each in branch_merge.conflicts if each.problem)
+        return MergedBranch(replace(branch_merge, conflicts=conflicts), commit, files.unmerged)
+
+    def _find_contradictions(self, ours: _MergeState, theirs: _MergeState, tree: str) -> Iterator[FileConflict]:
+        """Yield where a merged tree says something else than both sides together, though all of its files merge."""
+        base_project = self._check_base(ours, theirs)
+        merged_project = self._check_commit(tree, "merged")
+        projects = base_project, ours.checked_project, theirs.checked_project, merged_project
+        tables = [read_merged_value(each.merged_table) if each else EMPTY_MAPPING for each in projects]
+        base, our, their, merged = tables
+        path: tuple[str, ...] = ()
+        try:
+            expected = merge_values(*follow_renames(base, our, their))
+            if expected == merged:
+                return
+            problem = "its files merge, but together they do not say what both sides say"
+        except MergeConflictError as conflict:
+            path = conflict.path
+            problem = conflict.reason or f"both sides changed `{'.'.join(path)}`, and git takes the lines of both"
+        node = find_value(merged_project.merged_table, *path) if merged_project and path else None
+        yield FileConflict(self._path_in_repository(node.span.file) if node else "", problem)
 
     def join_states(self, states: Sequence[_MergeState]) -> _MergeState | None:
         """Merge states and check what comes out; None where they do not merge."""
@@ -233,15 +420,18 @@ class BranchMerger:
             )
             for rename in find_double_renames(*(version.architecture for version in versions))
         )
-        return JointBreaks() if double_renames else self._find_breaks(*versions), double_renames
+        return JointBreaks() if double_renames else self._judges.find_breaks(*versions), double_renames
 
     def _check_base(self, ours: _MergeState, theirs: _MergeState) -> CheckedProject | None:
         """Check the project where both sides parted; None where it was not there, or the clone does not reach back."""
+        fork = self._find_fork(ours, theirs)
+        return self._check_commit(fork.commit_id, fork.description) if fork else None
+
+    def _find_fork(self, ours: _MergeState, theirs: _MergeState) -> git.BaseCommit | None:
         try:
-            fork = git.find_common_commit(self._merge_folder.objects.repository, ours.commit, theirs.commit)
+            return git.find_common_commit(self._merge_folder.objects.repository, ours.commit, theirs.commit)
         except GitError:
             return None
-        return self._check_commit(fork.commit_id, fork.description)
 
     def _path_in_repository(self, file: str) -> str:
         return posixpath.normpath(posixpath.join(self._tracked_project.locations[0][0], file))
@@ -330,7 +520,7 @@ def preview_merges(
     path: Path | None,
     main_line: str,
     branches: Sequence[str],
-    find_breaks: BreakFinder,
+    judges: BranchJudges,
     *,
     leaves_out_unmergeable: bool = False,
 ) -> Iterator[BranchMerge]:
@@ -341,7 +531,7 @@ def preview_merges(
     """
     tracked_project = project.find_tracked_project(path)
     with open_merge_folder(tracked_project.objects.repository) as merge_folder:
-        merger = BranchMerger(tracked_project, merge_folder, find_breaks)
+        merger = BranchMerger(tracked_project, merge_folder, judges)
         main_state = merger.read_state(main_line, ())
         merged_states = []
         for branch in dict.fromkeys(branches):

@@ -42,19 +42,24 @@ def describe_order(branch_merge: BranchMerge, main_line: str) -> str:
 
 def describe_conflict(conflict: FileConflict) -> str:
     """Return what is to be done about a file that git conflicts in."""
-    outcome = conflict.problem or "git conflicts, what both sides say does not: `archgen merge-driver` merges it"
+    verb = "merge" if conflict.is_followed else "merge-driver"
+    outcome = conflict.problem or f"git conflicts, what both sides say does not: `archgen {verb}` merges it"
     return f"{conflict.file}: {outcome}" if conflict.file else outcome
 
 
 _VERSION = 1
 
 
-def format_merges_json(main_line: str, branch_merges: Iterable[BranchMerge]) -> str:
-    """Return all merges as one JSON document, in their order, with a line end behind it."""
+def format_merges_json(main_line: str, branch_merges: Iterable[BranchMerge], *, is_written: bool | None = None) -> str:
+    """Return all merges as one JSON document, in their order, with a line end behind it.
+
+    `is_written` says of a merge that was asked for whether it stands in the work tree.
+    """
     return format_json(
         {
             "version": _VERSION,
             "main": main_line,
+            **({} if is_written is None else {"written": is_written}),
             "merges": [
                 {
                     "branches": list(branch_merge.branches),
@@ -65,6 +70,7 @@ def format_merges_json(main_line: str, branch_merges: Iterable[BranchMerge]) -> 
                     "new_findings": [finding_to_json(finding) for finding in branch_merge.new_findings],
                     "breaks": [finding_to_json(finding) for finding in branch_merge.joint_breaks.findings],
                     "order": _order_to_json(branch_merge),
+                    "followed": list(branch_merge.followed),
                 }
                 for branch_merge in branch_merges
             ],

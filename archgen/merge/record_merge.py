@@ -16,10 +16,13 @@ RECORD_FOLDER = ".archgen/imported"
 ELSEWHERE_FOLDER = ".archgen/said_elsewhere"
 """What it said and other files of the project say, too, so that a slice leaves it out: each difference is told once."""
 
+SOURCE_FOLDER = ".archgen/imported_from"
+"""From which files a slice comes, and the digest of what they held."""
+
 
 def is_record(path: str) -> bool:
     """Whether a file of a repository is a record of an import."""
-    return any(f"/{folder}/" in f"/{path}" for folder in (RECORD_FOLDER, ELSEWHERE_FOLDER))
+    return any(f"/{folder}/" in f"/{path}" for folder in (RECORD_FOLDER, ELSEWHERE_FOLDER, SOURCE_FOLDER))
 
 
 def merge_records(versions: SliceVersions) -> str:

@@ -56,6 +56,30 @@ def find_renames(
             yield from find_renames(old[key], our[key], their[key], (*path, key))
 
 
+def follow_renames(
+    base: MergedValue, ours: MergedValue, theirs: MergedValue
+) -> tuple[MergedValue, MergedValue, MergedValue]:
+    """Return the versions with the new ids in all of them. Raise MergeConflictError."""
+    for rename in find_renames(base, ours, theirs):
+        base = _rename_key(base, rename.path, rename)
+        ours, theirs = (
+            (ours, _rename_key(theirs, rename.path, rename))
+            if rename.is_ours
+            else (_rename_key(ours, rename.path, rename), theirs)
+        )
+    return base, ours, theirs
+
+
+def _rename_key(value: MergedValue, path: tuple[str, ...], rename: KeyRename) -> MergedValue:
+    if not isinstance(value, MappingValue):
+        return value
+    if not path:
+        items = ((rename.new_key if key == rename.old_key else key, item) for key, item in value.items)
+    else:
+        items = ((key, _rename_key(item, path[1:], rename) if key == path[0] else item) for key, item in value.items)
+    return MappingValue(tuple(sorted(items, key=lambda item: item[0])))
+
+
 def _judge_key(
     key: str,
     versions: tuple[_Entries, _Entries, _Entries],

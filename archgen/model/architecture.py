@@ -14,6 +14,7 @@ from archgen.model.conform_settings import ConformSettings
 from archgen.model.coordinate_frames import Frame
 from archgen.model.deployment import Container, Host, Link, Resource
 from archgen.model.element_annotations import NO_ANNOTATIONS, ElementAnnotations, PropertyDeclaration
+from archgen.model.generate_settings import GenerateSettings
 from archgen.model.known_interfaces import Interfaces
 from archgen.model.made_elements import ElementPlace, MadeElement
 from archgen.model.message_types import ConceptualType
@@ -118,6 +119,20 @@ class View:
 
 
 @dataclass(frozen=True, slots=True)
+class Milestone:
+    """A day, as YYYY-MM-DD, on which the components and nodes that a selector selects have to be there."""
+
+    id: str
+    title: str
+    date: str | None = None
+    needs: str | None = None
+    description: str | None = None
+    annotations: ElementAnnotations = NO_ANNOTATIONS
+    at: Span = field(default=NO_SPAN, compare=False, repr=False)
+    needs_at: Span = field(default=NO_SPAN, compare=False, repr=False)
+
+
+@dataclass(frozen=True, slots=True)
 class SourceDemand:
     """Who may take its inputs only from whom, as two selectors.
 
@@ -169,6 +184,8 @@ class ProjectInfo:
     title: str
     version: str | None = None
     description: str | None = None
+    license: str | None = None
+    """The licence of its code, as SPDX calls it."""
     middleware: str = "ros"
     """What digital ports travel over where they do not say."""
     at: Span = field(default=NO_SPAN, compare=False, repr=False)
@@ -216,6 +233,8 @@ class Architecture:
     """What `ros.parameters` says to every node."""
     ros_environment: tuple[ParameterValue, ...] = field(default=())
     """The variables with which `ros.environment` says that everything is started."""
+    ros_discovery: str | None = None
+    """How nodes of different hosts find one another: `peers` by addresses, else by multicast."""
     layout: DiagramLayout = field(default_factory=DiagramLayout)
     partners: Mapping[str, Partner] = field(default_factory=dict)
     agreements: Mapping[str, Agreement] = field(default_factory=dict)
@@ -246,6 +265,7 @@ class Architecture:
     """Those of the project and those of its components, by name."""
     chains: Mapping[str, Chain] = field(default_factory=dict)
     views: Mapping[str, View] = field(default_factory=dict)
+    milestones: Mapping[str, Milestone] = field(default_factory=dict)
     policies: Mapping[str, Policy] = field(default_factory=dict)
     variants: Mapping[str, Variant] = field(default_factory=dict)
     """The variants that the project describes; none in the project as it stands in one of them."""
@@ -255,6 +275,7 @@ class Architecture:
     """What terms mean, by the term as written."""
     review: ReviewSettings = field(default_factory=ReviewSettings)
     conform: ConformSettings = field(default_factory=ConformSettings)
+    generate: GenerateSettings = field(default_factory=GenerateSettings)
     endpoints: tuple[Endpoint, ...] = ()
     topics: Mapping[str, Topic] = field(default_factory=dict)
     channels: Mapping[str, Topic] = field(default_factory=dict)
@@ -344,6 +365,10 @@ class Architecture:
         """Yield what nodes exchange data over, by name: topics, services and actions, then channels of other media."""
         yield from self.topics.items()
         yield from self.channels.items()
+
+    def find_carrier(self, name: str) -> Topic | None:
+        """Return a topic, a service, an action or a channel by its name."""
+        return self.channels.get(name) or self.topics.get(name)
 
     def list_endpoints(self) -> Iterator[Endpoint]:
         """Yield the endpoints of nodes over ROS, then those over other media."""

@@ -27,6 +27,8 @@ class Host:
     fair: FairScheduling | None = None
     """The figures of `scheduling: fair`, where some are written."""
     description: str | None = None
+    address: str | None = None
+    """Its name or number in the network, None where its id is its name."""
     environment: Mapping[str, str] = field(default_factory=dict)
     """Variables with which all processes on it are started."""
     tags: tuple[str, ...] = ()
@@ -35,6 +37,11 @@ class Host:
     core_places: Mapping[int, Span] = field(default_factory=dict, compare=False, repr=False)
     """Where the scheduling of single cores is written."""
     environment_places: Mapping[str, Span] = field(default_factory=dict, compare=False, repr=False)
+
+    @property
+    def network_name(self) -> str:
+        """Under which name or number other hosts find it."""
+        return self.address or self.id
 
 
 @dataclass(frozen=True, slots=True)
@@ -91,9 +98,15 @@ class Link:
     """The components that are devices on it, by complete id."""
     protocol: str | None = None
     """What is spoken on it, as a medium's word."""
+    owner: str | None = None
     annotations: ElementAnnotations = NO_ANNOTATIONS
     at: Span = field(default=NO_SPAN, compare=False, repr=False)
     protocol_at: Span = field(default=NO_SPAN, compare=False, repr=False)
     connects_at: Span = field(default=NO_SPAN, compare=False, repr=False)
     unresolved: tuple[str, ...] = ()
     """The entries of `connects` that name neither a host nor a component."""
+
+    @property
+    def owners(self) -> tuple[str, ...]:
+        """Return the partner who answers for it, where one does."""
+        return (self.owner,) if self.owner else ()

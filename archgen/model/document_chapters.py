@@ -6,6 +6,7 @@ from archgen.frozen import dataclass
 
 GENERATED_CHAPTERS = (
     "overview",
+    "between_partners",
     "use_cases",
     "groups",
     "frames",

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Mapping, Sequence
 from typing import Literal
 
@@ -13,6 +14,12 @@ CallMode = Literal["synchronous", "asynchronous"]
 MAX_NAME_LENGTH = 200
 """The longest name of a parameter in characters. Names of nested sets are joined: without a bound a small file of deep
 sets would have gigabytes of names."""
+_NAME_PATTERN = re.compile(r"[^\s.]+(?:\.[^\s.]+)*\Z")
+
+
+def is_parameter_name(name: str) -> bool:
+    """Whether the language takes a dotted name of a parameter."""
+    return len(name) <= MAX_NAME_LENGTH and _NAME_PATTERN.match(name) is not None
 
 
 @dataclass(frozen=True, slots=True)

@@ -19,12 +19,12 @@ ValueOrigin = Literal["ros", "component", "file", "command", "node", "none"]
 
 _ROS_2_NAMES = re.compile(
     r"use_sim_time\Z|start_type_description_service\Z|autostart_node\Z|bond_heartbeat_period\Z|thread_num\Z"
-    r"|qos_overrides(?:\..*)?\Z|diagnostic_updater(?:\..*)?\Z"
+    r"|stand_in\Z|qos_overrides(?:\..*)?\Z|diagnostic_updater(?:\..*)?\Z"
     r"|.*\.(?:compressed|theora|compressedDepth|zstd|ffmpeg)(?:\..*)?\Z|.*\.(?:enable_pub_plugins|jpeg_quality|png_level)\Z",
     re.DOTALL,
 )
-"""What rclcpp and rclpy declare for every node, and the libraries of life-cycle nodes, containers, diagnostics and
-image_transport."""
+"""What rclcpp and rclpy declare for every node, the libraries of life-cycle nodes, containers, diagnostics and
+image_transport, and nodes that archgen generates with a stand-in."""
 _ROS_1_NAMES = re.compile(
     r"use_sim_time\Z|tf_prefix\Z|num_worker_threads\Z|enable_statistics\Z|statistics_window_(?:min|max)_(?:size|elements)\Z"
     r"|diagnostic_period\Z|.*\.(?:compressed|theora|compressedDepth)(?:\..*)?\Z",

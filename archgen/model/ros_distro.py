@@ -20,3 +20,8 @@ PAST_DISTROS = ROS_1_DISTROS | {
 def is_ros_1(distro: str | None) -> bool:
     """Whether a distribution is one of ROS 1; False for None."""
     return distro in ROS_1_DISTROS
+
+
+def can_name_peers(distro: str | None) -> bool:
+    """Whether nodes of a distribution find those of other hosts by addresses in the environment: ROS 2 since Iron."""
+    return distro not in (PAST_DISTROS - {"iron"}) | {"humble"}

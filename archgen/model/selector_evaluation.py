@@ -23,6 +23,8 @@ __all__ = ["Selection", "SelectorEvaluator", "SelectorProblem", "evaluate_select
 _ALL_BELOW = ".**"
 """Behind a path: everything below it, to any depth."""
 _PATH_KINDS = ("group", "component", "output")
+_NAMING_KEYS = ("owner", "host", "requirement", "use_case", "variant", "tag", "package", "library")
+"""Keys whose values are names that somebody may write alone."""
 _MAX_GUESS_POOL = 100_000
 """No guess is made among more names than these: it would take seconds."""
 
@@ -237,7 +239,8 @@ class SelectorEvaluator:
             remedy = f"write more of the path, such as `{match.elements[0].id}`"
             problems.append(SelectorProblem(message, atom.start, atom.end, help=remedy))
         elif not match.count:
-            guess = self._guess_path(atom.value)
+            key = next((key for key in _NAMING_KEYS if atom.value in list_key_values(self.architecture, key)), None)
+            guess = f"{key}:{atom.value}" if key else self._guess_path(atom.value)
             help_line = f"did you mean `{guess}`?" if guess else NAMES_HELP
             problems.append(SelectorProblem(f"nothing is called `{atom.value}`", atom.start, atom.end, help=help_line))
         return self._hit_of_elements(match.elements if match.count == 1 else ())

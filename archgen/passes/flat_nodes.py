@@ -11,9 +11,6 @@ from archgen import derivation
 from archgen.derivation.ros_names import default_port_name
 from archgen.diagnostics.source_span import Span
 from archgen.link import mapping_values
-from archgen.link.declare.component_nodes import ComponentNodes
-from archgen.link.declare.handed_parameters import HandedParameters
-from archgen.link.declare.node_declaration import resolve_implements
 from archgen.model.architecture import Architecture
 from archgen.model.node import Endpoint
 from archgen.passes.linked_tree import LinkedTree
@@ -26,21 +23,14 @@ _TIMED_BY_COMPONENT = ("timing", "callback_groups")
 class FlatNodes:
     """Writes the nodes of a project whose leaves get other ids."""
 
-    def __init__(self, linked: LinkedTree, root: MappingNode, flat_ids: Mapping[str, str]) -> None:
-        """Take what the linker knows, the merged project, and the complete ids that leaves get."""
+    def __init__(self, linked: LinkedTree, flat_ids: Mapping[str, str]) -> None:
+        """Take what the linker knows, and the complete ids that leaves get."""
         self._linked = linked
         self._flat_ids = flat_ids
         self._architecture: Architecture = derivation.derive_low_level(linked.architecture)
-        self._written_nodes = mapping_values.get_mapping(root, "nodes")
-        self._targets = resolve_implements(root, linked.resolver)
-        self._made = ComponentNodes(
-            linked.outline,
-            linked.expansion,
-            self._written_nodes,
-            self._targets,
-            HandedParameters(linked.outline, []),
-            linked.resolver,
-        )
+        self._written_nodes = mapping_values.get_mapping(linked.expansion.root, "nodes")
+        self._targets = linked.node_targets
+        self._made = linked.component_nodes
         self._node_by_leaf = {ids[0]: node_id for node_id, ids in self._made.implements.items()}
         planned_nodes = [each for each in self._architecture.nodes.values() if not each.written]
         self._planned_ids = {each.implements[0]: each.id for each in planned_nodes if len(each.implements) == 1}
@@ -133,12 +123,8 @@ class FlatNodes:
         new_names |= {leaf: self._flat_ids[leaf] for leaf in leaves}
         inner = mapping_values.get_body(entry)
         if entry.key == "timing":
-            entries = {
-                new_names.get(each.key, each.key): MappingEntry(
-                    new_names.get(each.key, each.key), each.key_span, each.value
-                )
-                for each in inner
-            }
+            renamed = ((new_names.get(each.key, each.key), each) for each in inner)
+            entries = {name: MappingEntry(name, each.key_span, each.value) for name, each in renamed}
         else:
             entries = {each.key: each.with_value(_rename_items(each.value, new_names)) for each in inner}
         return entry.with_value(MappingNode(entries, inner.span))
@@ -161,9 +147,7 @@ class FlatNodes:
         flat_id = self._flat_ids.get(endpoint.component or "") if endpoint else None
         if endpoint is None or key in body.entries or endpoint.name == default_port_name(f"{flat_id}.{use.key}"):
             return use
-        text = ScalarNode(endpoint.label, endpoint.label, use.key_span)
-        value = SequenceNode([text], use.key_span) if key == "topic" else text
-        named = {**body.entries, key: MappingEntry(key, use.key_span, value)}
+        named = {**body.entries, key: _write_name(key, endpoint.label, use.key_span)}
         return use.with_value(MappingNode(named, use.key_span))
 
     def _keep_names(
@@ -195,10 +179,9 @@ class FlatNodes:
             )
             if written is None and not is_otherwise:
                 continue
-            if is_otherwise and model_name and _USES[endpoint.use] not in body:
-                text = ScalarNode(model_name, model_name, place)
-                value = SequenceNode([text], place) if _USES[endpoint.use] == "topic" else text
-                body[_USES[endpoint.use]] = MappingEntry(_USES[endpoint.use], place, value)
+            naming_key = _USES[endpoint.use]
+            if is_otherwise and model_name and naming_key not in body:
+                body[naming_key] = _write_name(naming_key, model_name, place)
             if old_key is not None:
                 renamed.add((endpoint.use, old_key))
             span = written.key_span if written else place
@@ -208,6 +191,12 @@ class FlatNodes:
             key_span = entries[use].key_span if use in entries else place
             entries = {**entries, use: MappingEntry(use, key_span, MappingNode({**kept, **made}, key_span))}
         return entries
+
+
+def _write_name(key: str, name: str, place: Span) -> MappingEntry:
+    """Return the `topic` or `name` of an end."""
+    text = ScalarNode(name, name, place)
+    return MappingEntry(key, place, SequenceNode([text], place) if key == "topic" else text)
 
 
 def _find_written(written: Mapping[str, MappingEntry], port_id: str) -> tuple[str | None, MappingEntry | None]:
@@ -222,13 +211,7 @@ def _find_written(written: Mapping[str, MappingEntry], port_id: str) -> tuple[st
 
 def _rename_items(node: object, names: Mapping[str, str]) -> SequenceNode | ScalarNode | MappingNode:
     if isinstance(node, SequenceNode):
-        items = [
-            ScalarNode(names[each.text], names[each.text], each.span)
-            if isinstance(each, ScalarNode) and each.text in names
-            else each
-            for each in node.items
-        ]
-        return SequenceNode(items, node.span)
+        return SequenceNode([_rename_items(each, names) for each in node.items], node.span)
     if isinstance(node, ScalarNode) and node.text in names:
         return ScalarNode(names[node.text], names[node.text], node.span)
     return node  # type: ignore[return-value]

@@ -60,7 +60,7 @@ class _Flattener:
         self._sources = FlatSources(linked, flat_ids)
         self._open_shells = OpenShells(linked.outline, linked.joined_sources)
         self._parameters = HandedParameters(linked.outline, [])
-        self._nodes = FlatNodes(linked, linked.expansion.root, flat_ids)
+        self._nodes = FlatNodes(linked, flat_ids)
         self._run_leaves = self._nodes.list_run_leaves()
         architecture = derivation.derive_low_level(linked.architecture)
         self._references = FlatReferences(linked, flat_ids, architecture)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator, Mapping
+from itertools import chain, count
 
 from archgen.compose.type_expressions import TypeExpression, parse_type_expression
 from archgen.compose.type_table import OPERATION_PARTS, bind_type_body, list_generic_names
@@ -15,7 +16,7 @@ from archgen.model.generic_names import read_generic_name
 from archgen.model.message_types import PART_KEYS
 from archgen.model.path_resolver import title_from_id
 from archgen.passes.pass_shape import Pass, PassWork
-from archgen.passes.project_tree import ProjectTree, list_paths
+from archgen.passes.project_tree import list_paths
 from archgen.passes.selector_rewriting import rename_by_key, rename_in_selectors
 from archgen.passes.written_places import find_type_path, is_written, list_holders, list_type_sections
 from archgen.syntax.yaml_tree import MappingEntry, MappingNode, ScalarNode, YamlNode, list_entries
@@ -36,11 +37,6 @@ def _specialise_data_types(work: PassWork) -> list[tuple[str, str]]:
     return list(specialiser.names.items())
 
 
-def _list_data_type_sections(tree: ProjectTree) -> list[TreePath]:
-    """Return the paths of the mappings that hold data types: the project's own, then those of its libraries."""
-    return [("types",), *(("libraries", name, "types") for name in tree.get_mapping(("libraries",)))]
-
-
 class _DataTypeSpecialiser:
     """Names and makes the types; each name is made once."""
 
@@ -52,7 +48,7 @@ class _DataTypeSpecialiser:
         """The names that bound types get."""
         self._written = {
             mapping_values.normalise_type_name(key): path
-            for section in _list_data_type_sections(self._tree)
+            for section in list_type_sections(self._tree, "types")
             for key in self._tree.get_mapping(section)
             for path in ((*section, key),)
         }
@@ -107,11 +103,8 @@ class _DataTypeSpecialiser:
 
     def _find_free_name(self, wanted_name: str) -> str:
         used_names = {*self._types, *self.names.values()}
-        number, name = 1, wanted_name
-        while name in used_names:
-            number += 1
-            name = f"{wanted_name} {number}"
-        return name
+        names = chain([wanted_name], (f"{wanted_name} {number}" for number in count(2)))
+        return next(name for name in names if name not in used_names)
 
     def _write_type(self, name: str, plain_name: str, base: str, arguments: tuple[str, ...]) -> None:
         made_path: TreePath = ("types", plain_name)
@@ -203,7 +196,7 @@ def _remove_generics(work: PassWork) -> None:
     data_names = _specialise_data_types(work)
     for key, new_names, sections in (
         ("is", component_names, list_type_sections(work.tree)),
-        ("type", data_names, _list_data_type_sections(work.tree)),
+        ("type", data_names, list_type_sections(work.tree, "types")),
     ):
         known_names = [
             f"{section[1]}.{name}" if key == "is" and len(section) > 1 else name

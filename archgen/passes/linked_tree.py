@@ -8,8 +8,11 @@ from archgen import compose, link
 from archgen.compose import ExpandedProject
 from archgen.diagnostics.diagnostic import Diagnostic
 from archgen.frozen import dataclass
-from archgen.link import element_outline
+from archgen.link import element_outline, mapping_values
 from archgen.link.automatic_connections import join_ports
+from archgen.link.declare.component_nodes import ComponentNodes
+from archgen.link.declare.handed_parameters import HandedParameters
+from archgen.link.declare.node_declaration import resolve_implements
 from archgen.link.declare.type_declaration import DeclaredTypes
 from archgen.link.element_outline import ElementOutline
 from archgen.link.port_sources import PortSources
@@ -76,6 +79,23 @@ class LinkedTree:
             interfaces=self.interfaces,
             lost_keys=self.loaded_project.lost_keys,
             is_partial=self.loaded_project.partial,
+        )
+
+    @cached_property
+    def node_targets(self) -> dict[str, tuple[str, ...]]:
+        """What each node of the section of nodes implements, by complete ids."""
+        return resolve_implements(self.expansion.root, self.resolver)
+
+    @cached_property
+    def component_nodes(self) -> ComponentNodes:
+        """All nodes in normal form: those that are written, and those that components bring along."""
+        return ComponentNodes(
+            self.outline,
+            self.expansion,
+            mapping_values.get_mapping(self.expansion.root, "nodes"),
+            self.node_targets,
+            HandedParameters(self.outline, []),
+            self.resolver,
         )
 
     @property

@@ -54,7 +54,6 @@ class UnknownPassError(Exception):
     """A pass is asked for that there is not."""
 
     def __init__(self, name: str, known_names: Sequence[str]) -> None:
-        """Take the name, and those that there are."""
         help_line = did_you_mean(name, known_names) or "`archgen transform --list` shows all"
         super().__init__(f"no pass named `{name}`: {help_line}")
 

@@ -24,7 +24,7 @@ class _OldPlaces:
     """Where everything stands in the old tree, by identity and, for what was copied since, by place and key."""
 
     def __init__(self, tree: ProjectTree) -> None:
-        self._tree = tree
+        self.tree = tree
         self._item_origins = _index_items(tree.provenance)
         self._by_identity: dict[int, TreePath] = {}
         self._by_place: dict[tuple[Span, str], TreePath] = {}
@@ -46,22 +46,14 @@ class _OldPlaces:
 
     def make_origin(self, old_path: TreePath) -> Origin:
         """Return the origin of what was moved by the pass that edits at present."""
-        origin = self._tree.make_origin(old_path)
-        traced = self._tree.trace(old_path)
+        origin = self.tree.make_origin(old_path)
+        traced = self.tree.trace(old_path)
         return origin._replace(is_moved=not traced.passes or traced.is_moved)
-
-    def trace(self, old_path: TreePath) -> Origin:
-        """Return the origin of a value as it was before."""
-        return self._tree.trace(old_path)
 
     def is_rewritten(self, old_path: TreePath, value: YamlNode) -> bool:
         """Whether a leaf holds something else than before."""
-        old_value = self._tree.get(old_path)
+        old_value = self.tree.get(old_path)
         return not isinstance(value, MappingNode) and old_value is not None and not have_same_content(old_value, value)
-
-    def find_origin(self, old_path: TreePath) -> Origin | None:
-        """Return the origin that is written down of a value itself."""
-        return self._tree.provenance.get(old_path)
 
     def find_item_origins(self, old_path: TreePath) -> list[tuple[TreePath, Origin]]:
         """Return the origins inside of a list, by the rest of their paths."""
@@ -87,10 +79,10 @@ def _trace_mapping(
         found_path = places.find(entry, is_component=path[-1:] == ("components",))
         if found_path is not None and found_path != expected_path:
             is_unmoved = found_path == inner_path
-            origins[inner_path] = places.trace(found_path) if is_unmoved else places.make_origin(found_path)
+            origins[inner_path] = places.tree.trace(found_path) if is_unmoved else places.make_origin(found_path)
         elif found_path is not None and places.is_rewritten(found_path, entry.value):
             origins[inner_path] = places.make_origin(found_path)._replace(is_moved=False)
-        elif found_path is not None and (own_origin := places.find_origin(found_path)) is not None:
+        elif found_path is not None and (own_origin := places.tree.provenance.get(found_path)) is not None:
             origins[inner_path] = own_origin
         now_expected = found_path or expected_path
         if isinstance(entry.value, MappingNode):

@@ -39,10 +39,9 @@ def list_typed_holders(tree: ProjectTree) -> Iterator[Holder]:
         yield from _list_section(tree, path)
 
 
-def list_type_sections(tree: ProjectTree) -> list[TreePath]:
-    """Return the paths of the mappings that hold component types: the project's own, then those of its libraries."""
-    libraries = tree.get_mapping(("libraries",))
-    return [("component_types",), *(("libraries", name, "component_types") for name in libraries)]
+def list_type_sections(tree: ProjectTree, section: str = "component_types") -> list[TreePath]:
+    """Return the paths of the mappings that hold component types, or `types`: the project's own, then its libraries'."""
+    return [(section,), *(("libraries", name, section) for name in tree.get_mapping(("libraries",)))]
 
 
 def find_type_path(tree: ProjectTree, name: str) -> TreePath | None:

@@ -2,8 +2,10 @@
 
 from archgen.bringup.program_names import (
     ProgramNames,
+    find_node_language,
     group_by_program,
     index_endpoints,
+    is_loadable,
     list_generated_nodes,
     name_endpoints,
     name_package,
@@ -39,6 +41,7 @@ from archgen.views.generation.generation_context import (
 from archgen.views.generation.program_parts import (
     PORT_SECTIONS,
     convert_ros_value,
+    find_program_type,
     infer_ros_type,
     list_node_values,
     record_parameters,
@@ -61,11 +64,14 @@ __all__ = [
     "collect_messages",
     "convert_ros_value",
     "find_name_clashes",
+    "find_node_language",
+    "find_program_type",
     "find_text_fault",
     "find_type_words",
     "group_by_program",
     "index_endpoints",
     "infer_ros_type",
+    "is_loadable",
     "list_generated_nodes",
     "list_name_words",
     "list_node_values",

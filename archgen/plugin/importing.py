@@ -7,6 +7,7 @@ from archgen.importers.foreign_files import (
     ARCHIVE_DAMAGE,
     ZIP_BEGINNING,
     XmlElement,
+    XmlEvents,
     XmlProblem,
     explain_encoding,
     explain_syntax,
@@ -31,7 +32,7 @@ from archgen.model.code_names import make_camel_name
 from archgen.model.element_ids import MAX_ID_LENGTH, is_id, make_id, make_unique_id, spell_in_ascii
 from archgen.model.path_resolver import title_from_id
 from archgen.pipeline import link_slices
-from archgen.project.library_reading import find_program_name, load_shipped_component_types
+from archgen.project.library_reading import find_program_name, index_shipped_programs, load_shipped_component_types
 from archgen.regular_files import open_named_file
 from archgen.syntax.project_files import MAX_BYTES
 from archgen.syntax.yaml_parser import parse_yaml
@@ -68,12 +69,14 @@ __all__ = [
     "Span",
     "WorkBudget",
     "XmlElement",
+    "XmlEvents",
     "XmlProblem",
     "YamlNode",
     "explain_encoding",
     "explain_syntax",
     "find_closest",
     "find_program_name",
+    "index_shipped_programs",
     "is_id",
     "link_slices",
     "load_shipped_component_types",

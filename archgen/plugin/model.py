@@ -9,9 +9,10 @@ from archgen.model.generic_names import read_generic_name
 from archgen.model.graph_search import find_rings
 from archgen.model.message_types import PART_KEYS, ConceptualType, DataField, flow_of
 from archgen.model.node import Endpoint, FlowKind, Node, Qos, Topic, UseKind, qos_profile
-from archgen.model.parameter import MAX_NAME_LENGTH, Operation, Parameter
+from archgen.model.parameter import MAX_NAME_LENGTH, Operation, Parameter, is_parameter_name
 from archgen.model.parameter_values import canonical_name, find_declarations
 from archgen.model.port_media import DIGITAL, MEDIUM_NAMES, flow_of_port, is_physical, uses_ros, word_of_medium
+from archgen.model.process_scheduling import NO_SCHEDULING, ProcessScheduling, read_scheduling
 from archgen.model.quantity import MAX_DIGITS, Quantity, parse_quantity
 from archgen.model.requirement import Requirement
 from archgen.model.selector_evaluation import Selection, evaluate_selector
@@ -22,6 +23,7 @@ __all__ = [
     "MAX_DIGITS",
     "MAX_NAME_LENGTH",
     "MEDIUM_NAMES",
+    "NO_SCHEDULING",
     "PART_KEYS",
     "PHASES",
     "Architecture",
@@ -44,6 +46,7 @@ __all__ = [
     "Output",
     "Parameter",
     "Partner",
+    "ProcessScheduling",
     "Qos",
     "Quantity",
     "Requirement",
@@ -59,10 +62,12 @@ __all__ = [
     "find_rings",
     "flow_of",
     "flow_of_port",
+    "is_parameter_name",
     "is_physical",
     "parse_quantity",
     "qos_profile",
     "read_generic_name",
+    "read_scheduling",
     "uses_ros",
     "word_of_medium",
 ]

@@ -1,5 +1,6 @@
 """What archgen knows of ROS: distributions, messages and interface files, names, files of parameters."""
 
+from archgen.derivation.ros_names import shared_topic_names
 from archgen.derivation.wire.name_expansion import expand_name, find_name_fault, find_node_name_fault
 from archgen.link.data_types.message_definitions import spell_message_name
 from archgen.link.interface_sources import load_interfaces
@@ -38,5 +39,6 @@ __all__ = [
     "matches_node_name",
     "parse_interface_definition",
     "read_parameter_text",
+    "shared_topic_names",
     "spell_message_name",
 ]

@@ -1,7 +1,8 @@
 """For generators of what starts a system: the plan of the start-up, its steps, and the words for them."""
 
 from archgen.bringup.plan_shapes import DEFAULT_SECONDS, RosLaunch, StartPlan, StartStep, format_seconds
-from archgen.bringup.start_plan import make_start_plan
+from archgen.bringup.start_commands import SUBSTITUTION, has_substitution
+from archgen.bringup.start_plan import find_network_variables, make_start_plan
 from archgen.views.generation.generation_context import find_wanted_steps
 from archgen.views.start_phrases import (
     KIND_WORDS,
@@ -15,6 +16,7 @@ from archgen.views.start_phrases import (
 __all__ = [
     "DEFAULT_SECONDS",
     "KIND_WORDS",
+    "SUBSTITUTION",
     "RosLaunch",
     "StartPlan",
     "StartStep",
@@ -22,8 +24,10 @@ __all__ = [
     "describe_lifecycle",
     "describe_ready",
     "describe_unknown",
+    "find_network_variables",
     "find_wanted_steps",
     "format_seconds",
+    "has_substitution",
     "make_start_plan",
     "name_waits",
 ]

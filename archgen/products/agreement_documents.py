@@ -18,6 +18,7 @@ from archgen.model.partner_interfaces import find_interfaces_between
 from archgen.pipeline import CheckedProject
 from archgen.products import project_views, signed_agreements
 from archgen.products.compared_versions import ProjectVersion
+from archgen.products.outline_markdown import render_outline_markdown
 from archgen.products.output_options import OutputOptions
 from archgen.products.product_writing import draw_or_warn
 from archgen.timing.analysis import ChainResult
@@ -26,11 +27,11 @@ from archgen.timing.search.chain_budgets import MAX_SHARE_TRIES, SharedBudget, U
 from archgen.timing.search.change_trials import ChangeTrials
 from archgen.views import inline_text
 from archgen.views.agreement.general_sections import BudgetFinder
+from archgen.views.agreement.interface_record import SignedTag
 from archgen.views.agreement.partner_agreement import PartnerAgreement, make_agreement
-from archgen.views.agreement.signature_record import SignedTag
 from archgen.views.lookup import Lookup
 from archgen.views.picture_shapes import Graph
-from archgen.views.shapes import Paragraph, Section
+from archgen.views.shapes import Paragraph
 from archgen.views.tables.finding_tables import describe_severities
 from archgen.views.timing.timing_lookup import complete_with_chains
 
@@ -212,38 +213,13 @@ def _unreadable_notice(signature: Signature | None, signed_tags: Sequence[Signed
     return Paragraph(inline_text.to_inlines(message), "warning")
 
 
-def render_agreement_markdown(partner_agreement: PartnerAgreement) -> str:
-    """Write an agreement as GitHub-flavoured Markdown, with its picture as Mermaid."""
-    from archgen.emit import backend_manifests, text
-
-    files = (backend_manifests.BackendFile("outline.md.j2", "agreement.md"),)
-    backend = replace(
-        backend_manifests.read_shipped_backend("wiki"), files=files, views=("outline", "graphs", "places")
-    )
-    # Markdown has no page for an element; the template may link only to sections of this document.
-    section_anchors = [section.anchor for section in _walk_sections(partner_agreement.outline.sections)]
-    written_files, problems = text.render_backend(
-        backend, {"outline": partner_agreement.outline, "graphs": (partner_agreement.graph,), "places": section_anchors}
-    )
-    if written_files is None:
-        raise file_tree.OutputError(problems[0].message, problems[0].help)
-    return written_files.files["agreement.md"].decode()
-
-
 def render_agreement_text(partner_agreement: PartnerAgreement, agreement_format: AgreementFormat) -> str:
     """Write an agreement as Markdown or JSON."""
     if agreement_format == "markdown":
-        return render_agreement_markdown(partner_agreement)
+        return render_outline_markdown(partner_agreement.outline, (partner_agreement.graph,))
     from archgen.emit.data.agreement_json import write_agreement_json
 
     return write_agreement_json(partner_agreement.content)
-
-
-def _walk_sections(sections: tuple[Section, ...]) -> Iterator[Section]:
-    """Yield all sections, each before those below it."""
-    for section in sections:
-        yield section
-        yield from _walk_sections(section.sections)
 
 
 def render_agreement_html(partner_agreement: PartnerAgreement, options: OutputOptions) -> bytes:

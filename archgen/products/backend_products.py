@@ -14,9 +14,10 @@ from archgen.products.output_options import OutputOptions
 from archgen.products.product_inputs import FinishProduct, MadeProduct, Product, ProductInputs
 from archgen.views.generation import make_generation_views
 from archgen.views.generation.generation_context import GenerationContext
-from archgen.views.picture_shapes import Graph, SequenceChart
+from archgen.views.graphs import list_graphs
 from archgen.views.records import resolved_record
 from archgen.views.requirement_exchange import make_requirement_exchange
+from archgen.views.sequences.sequence_charts import make_sequence_charts
 from archgen.views.tables import statistics_tables
 
 
@@ -62,8 +63,8 @@ def make_backend_views(
     shapes: dict[str, Callable[[], object]] = {
         "outline": lambda: inputs.outline,
         "pages": lambda: inputs.pages,
-        "graphs": lambda: tuple(graph for graph in inputs.views.drawings.values() if isinstance(graph, Graph)),
-        "sequences": lambda: tuple(each for each in inputs.views.drawings.values() if isinstance(each, SequenceChart)),
+        "graphs": lambda: tuple(list_graphs(inputs.views.lookup, inputs.views.drawings.values())),
+        "sequences": lambda: tuple(make_sequence_charts(inputs.views.lookup, inputs.views.lookup.scope.components)),
         "record": lambda: resolved_record.make_record(inputs.views.lookup),
         "tables": lambda: statistics_tables.make_statistics_tables(inputs.views.lookup.architecture),
     }

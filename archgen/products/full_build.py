@@ -20,8 +20,10 @@ from archgen.frozen import replace
 from archgen.pipeline import CheckedProject
 from archgen.products import project_views, report_cache
 from archgen.products.product_inputs import Product, ProductInputs
-from archgen.products.product_table import PRODUCTS, REPORT, SITE
+from archgen.products.product_table import MAX_TEMPLATE_BYTES, PRODUCTS, REPORT, SITE
 from archgen.products.product_writing import StartedProducts, start_products, write_started
+from archgen.products.seen_robots import read_seen_robots
+from archgen.regular_files import read_named_file
 
 if TYPE_CHECKING:
     from archgen.products.trusted_backends import TrustedRevision
@@ -72,6 +74,7 @@ def build_outputs(
         inputs,
         options=replace(inputs.options, revision=revision),
         undrawn_kinds=frozenset() if shows_components else inputs.site_undrawn_kinds,
+        report_path=f"../{REPORT.part}" if REPORT in products or (target / REPORT.part).is_file() else "",
     )
     stamp_keys = _make_stamp_keys(inputs, products)
     fresh_names = {
@@ -123,9 +126,10 @@ def _make_stamp_keys(inputs: ProductInputs, products: Sequence[Product]) -> Mapp
     if not any(product.follows_inputs for product in products):
         return {}
     shared_key = make_stamp_key(_list_inputs(inputs))
-    template = inputs.template.read_bytes() if inputs.template else None
+    template = read_named_file(inputs.template, MAX_TEMPLATE_BYTES) if inputs.template else None
+    own_inputs = {REPORT.name: template, SITE.name: inputs.report_path}
     return {
-        product.name: make_stamp_key((shared_key, product.name, template if product is REPORT else None))
+        product.name: make_stamp_key((shared_key, product.name, own_inputs.get(product.name)))
         for product in products
         if product.follows_inputs
     }
@@ -147,6 +151,7 @@ def _list_inputs(inputs: ProductInputs) -> Iterator[object]:
     )
     yield chapters.order, [(name, chapter.text) for name, chapter in chapters.texts.items()], checked_project.findings
     yield project_views.identify_history(checked_project, options)
+    yield read_seen_robots(checked_project)
 
 
 _MAX_STAMPS = 256

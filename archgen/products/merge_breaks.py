@@ -13,10 +13,11 @@ from archgen.compare.review_facts import ReviewFacts
 from archgen.diagnostics.common_wording import join_words
 from archgen.diagnostics.diagnostic import Diagnostic
 from archgen.diagnostics.source_span import NO_SPAN, Span
+from archgen.edit.refactoring.followed_branches import follow_branches
 from archgen.findings.rule_table import BREAKING_CHANGE
 from archgen.frozen import replace
 from archgen.link.interface_sources import interface_name_of
-from archgen.merge.branch_merge import JointBreaks
+from archgen.merge.branch_merge import BranchJudges, JointBreaks
 from archgen.pipeline import CheckedProject
 from archgen.products.compared_versions import ProjectVersion, compare_named_versions
 from archgen.views.changes.breaking_verdict import describe_remedy, join_categories
@@ -140,3 +141,7 @@ def _find_span(change: Change, comparison: Comparison, checked_project: CheckedP
     ]
     file = next((file for file in files if checked_project.sources.text_of(file) is not None), None)
     return Span.of_file(file) if file else NO_SPAN
+
+
+BRANCH_JUDGES = BranchJudges(find_joint_breaks, follow_branches)
+"""All that merging branches asks about them."""

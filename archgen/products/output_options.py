@@ -11,7 +11,7 @@ if TYPE_CHECKING:
     from archgen.model.selector_evaluation import Selection
     from archgen.products.trusted_backends import TrustedRevision
     from archgen.views.changes.site_changes import SiteChanges
-    from archgen.views.pages.report_outline import DetailLevel
+    from archgen.views.pages.report_outline import DetailLevel, ReportDocument
 
 DrawingProgress = Callable[[int, int], None]
 """Called with the number of pictures drawn so far, and of all pictures."""
@@ -42,4 +42,6 @@ class OutputOptions:
     types_only: bool = False
     """Whether only the component types are asked for: `--select type:` of an export that has them."""
     changes: SiteChanges | None = None
-    """What changed since an earlier version, where the site is to show it."""
+    """What changed since an earlier version, where site and report are to show it."""
+    document: ReportDocument = "deliverable"
+    """Which of the report's documents is written."""

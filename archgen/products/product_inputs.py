@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 from archgen.emit.file_tree import FileTree
 from archgen.emit.picture import Picture
 from archgen.frozen import dataclass, field, replace
+from archgen.model.document_chapters import GENERATED_CHAPTERS
 from archgen.pipeline import CheckedProject
 from archgen.products import project_views
 from archgen.products.output_options import OutputOptions
@@ -30,9 +31,13 @@ class ProductInputs:
     checked_project: CheckedProject
     options: OutputOptions
     template: Path | None = None
-    """The user's template of the Word report."""
+    """The user's template of the Word report, or of the slides."""
+    report_path: str = ""
+    """Where the report is from the site's folder, if there is one."""
     undrawn_kinds: frozenset[GraphKind] = frozenset()
     """The kinds of pictures that no product shows."""
+    is_report_alone: bool = False
+    """Whether there is no other product: it shows neither the runs in which chains are late nor marks of what changed."""
 
     @property
     def site_undrawn_kinds(self) -> frozenset[GraphKind]:
@@ -50,7 +55,12 @@ class ProductInputs:
     @cached_property
     def views(self) -> ProjectViews:
         """The look-ups and drawings."""
-        return project_views.make_views(self.checked_project, self.options, undrawn_kinds=self.undrawn_kinds)
+        return project_views.make_views(
+            self.checked_project,
+            self.options,
+            undrawn_kinds=self.undrawn_kinds,
+            is_report_alone=self.is_report_alone,
+        )
 
     @cached_property
     def timed_lookup(self) -> Lookup:
@@ -85,41 +95,55 @@ class ProductInputs:
     def printed_report(self) -> Outline:
         """The contents of the Word report."""
         # Here and below: nothing but the report reads these, and a site has enough to load.
+        from archgen.views.report.data_sheets import make_data_sheets
+        from archgen.views.report.deliverable import make_deliverable
         from archgen.views.report.printed_report import make_printed_report
 
-        return make_printed_report(self.views.lookup, self._report_edition)
+        makers = {"data-sheets": make_data_sheets, "deliverable": make_deliverable}
+        return makers.get(self.options.document, make_printed_report)(self.views.lookup, self._report_edition)
 
     @property
     def _report_edition(self) -> DocumentEdition:
         """What the report contains: at the level that is asked for here, else in the project."""
         level = self.options.level or self.views.edition.settings.level
         ros_place: RosPlace = "inline" if level == "implementation" else "annex"
-        return replace(self.views.edition, level=level or "implementation", ros_place=ros_place)
+        document = self.options.document
+        return replace(self.views.edition, level=level or "implementation", ros_place=ros_place, document=document)
 
     @cached_property
     def tabled_report(self) -> Outline:
         """The architecture as one document at the report's level, each table as it is on the site."""
         from archgen.views.pages import report_outline
 
-        return report_outline.make_report(self.views.lookup, self._report_edition)
+        edition = self._report_edition
+        # All lists, whatever chapters the project chose for its readers.
+        others = (name for name in GENERATED_CHAPTERS if name not in edition.chapter_names)
+        names = (*edition.chapter_names, *others)
+        edition = replace(edition, document="workbook", chapter_names=names)
+        return report_outline.make_report(self.views.lookup, edition)
 
     @cached_property
     def report_drawings(self) -> Mapping[str, Drawing]:
         """The pictures of the Word report by their own ids: those that it shows."""
-        from archgen.views.report.printed_report import walk_sections
         from archgen.views.report.report_drawings import make_report_drawings
-        from archgen.views.shapes import Figure
 
-        outline = self.printed_report
-        shown_ids = {
-            block.graph
-            for section in walk_sections((*outline.front_sections, *outline.sections))
-            for block in section.blocks
-            if isinstance(block, Figure)
-        }
+        shown_ids = _list_shown_pictures(self.printed_report)
         shows_ros = self._report_edition.level == "implementation"
         drawings = make_report_drawings(self.views.lookup, self.views.drawings, shows_ros=shows_ros)
         return {drawing.id: drawing for drawing in drawings.values() if drawing.id in shown_ids}
+
+    @cached_property
+    def slide_deck(self) -> Outline:
+        """The contents of the slides."""
+        from archgen.views.report.slide_deck import make_slide_deck
+
+        return make_slide_deck(self.views.lookup, self.views.edition)
+
+    @cached_property
+    def slide_drawings(self) -> Mapping[str, Drawing]:
+        """The pictures that the slides show, by id."""
+        shown_ids = _list_shown_pictures(self.slide_deck)
+        return {name: each for name, each in self.views.drawings.items() if each.id in shown_ids}
 
     @cached_property
     def pages(self) -> tuple[Page, ...]:
@@ -128,6 +152,15 @@ class ProductInputs:
 
         edition = replace(self.views.edition, drawings=self.site_drawings, undrawn_kinds=self.site_undrawn_kinds)
         return tuple(site_pages.make_pages(self.views.lookup, edition))
+
+
+def _list_shown_pictures(outline: Outline) -> frozenset[str]:
+    """Return the ids of the pictures that an outline shows."""
+    from archgen.views.report.printed_report import walk_sections
+    from archgen.views.shapes import Figure
+
+    sections = walk_sections((*outline.front_sections, *outline.sections))
+    return frozenset(block.graph for section in sections for block in section.blocks if isinstance(block, Figure))
 
 
 @dataclass(frozen=True, slots=True)

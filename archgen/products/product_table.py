@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     from archgen.emit.picture import Picture
 
 MAX_TEMPLATE_BYTES = 200_000_000
-"""The largest Word template that is read: as much as one may unpack to."""
+"""The largest template that is read: as much as one may unpack to."""
 
 
 class _RecordingReader:
@@ -63,6 +63,8 @@ def _start_report(inputs: ProductInputs) -> FinishProduct:
 
 
 def _start_site(inputs: ProductInputs) -> FinishProduct:
+    from archgen.cache.layout_memory import LayoutMemory
+    from archgen.cache.program_stamp import stamp_writers
     from archgen.emit import site
     from archgen.views.explorer import make_explorer_map
     from archgen.views.pages import report_outline
@@ -70,7 +72,7 @@ def _start_site(inputs: ProductInputs) -> FinishProduct:
 
     page_list = inputs.pages
     search_entries = make_search_entries(inputs.views.lookup, page_list)
-    explorer_map = make_explorer_map(inputs.views.lookup)
+    explorer_map = make_explorer_map(inputs.views.lookup, LayoutMemory(report_cache.cache_folder(), stamp_writers()))
 
     def finish(pictures: Mapping[str, Picture]) -> MadeProduct:
         reader = _RecordingReader(inputs.checked_project.chapters.read_picture)
@@ -83,6 +85,7 @@ def _start_site(inputs: ProductInputs) -> FinishProduct:
             chapter_files=reader.read,
             search_entries=search_entries,
             explorer_map=explorer_map,
+            report=inputs.report_path,
         )
         return MadeProduct(files, asked_files=reader.asked_files)
 
@@ -98,6 +101,21 @@ def make_diagrams_product(formats: Sequence[str], name_patterns: Sequence[str] =
         return lambda pictures: MadeProduct(picture_files.build_picture_tree(pictures, formats))
 
     return Product("diagrams", "diagrams", start, tuple(formats), tuple(name_patterns) or ("*",))
+
+
+def _start_slides(inputs: ProductInputs) -> FinishProduct:
+    from archgen.emit.pptx import PythonPptxError, write_slides
+    from archgen.emit.template_package import TemplateError
+
+    template = read_named_file(inputs.template, MAX_TEMPLATE_BYTES) if inputs.template else None
+
+    def finish(pictures: Mapping[str, Picture]) -> MadeProduct:
+        try:
+            return MadeProduct(write_slides(inputs.slide_deck, pictures, template))
+        except (PythonPptxError, TemplateError) as error:
+            raise file_tree.OutputError(str(error)) from None
+
+    return finish
 
 
 def _start_packed(inputs: ProductInputs) -> FinishProduct:
@@ -122,6 +140,13 @@ REPORT = Product(
 )
 SITE = Product(
     "site", "site", _start_site, ("svg",), entry_file="index.html", list_drawings=lambda inputs: inputs.site_drawings
+)
+SLIDES = Product(
+    "slides",
+    "slides.pptx",
+    _start_slides,
+    ("png", "svg_outlines"),
+    list_drawings=lambda inputs: inputs.slide_drawings,
 )
 # No PNG: the report has its own, and who wants files asks `archgen diagram` for them.
 DIAGRAMS = make_diagrams_product(("svg",))

@@ -5,7 +5,6 @@ from __future__ import annotations
 import fnmatch
 import os
 from collections.abc import Iterable, Mapping, Sequence
-from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -90,6 +89,7 @@ def start_products(inputs: ProductInputs, products: Sequence[Product]) -> Starte
     if not shown_products:
         return StartedProducts({product.name: product.start(inputs) for product in products}, DrawnPictures())
     # Imported here: where nothing is drawn, it is half of what would be loaded of Python.
+    from concurrent.futures import ThreadPoolExecutor
 
     from archgen.emit import graphviz
 

@@ -4,13 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from pathlib import Path
+from typing import get_args
 
 from archgen.emit import file_tree
 from archgen.frozen import replace
 from archgen.pipeline import CheckedProject
 from archgen.products.output_options import OutputOptions
 from archgen.products.product_inputs import ProductInputs
-from archgen.products.product_table import PACKED, REPORT, SITE, make_diagrams_product
+from archgen.products.product_table import PACKED, REPORT, SITE, SLIDES, make_diagrams_product
 from archgen.products.product_writing import (
     make_content,
     start_products,
@@ -19,13 +20,25 @@ from archgen.products.product_writing import (
     write_started,
 )
 from archgen.products.project_views import make_scoped_lookup
+from archgen.views.picture_shapes import GraphKind
 
 
 def write_report(
     checked_project: CheckedProject, options: OutputOptions, target: Path, template: Path | None = None
 ) -> None:
     """Write the Word report. Raise OSError, or OutputError for what the user can mend."""
-    write_product(ProductInputs(checked_project, options, template), REPORT, target)
+    write_product(_take_report_inputs(checked_project, options, template), REPORT, target)
+
+
+def _take_report_inputs(
+    checked_project: CheckedProject, options: OutputOptions, template: Path | None
+) -> ProductInputs:
+    """Return the inputs of a report alone, without pictures that it does not show: of 1,000 components they take minutes."""
+    inputs = ProductInputs(checked_project, options, template)
+    if options.document == "full":
+        return inputs
+    shown = {"component"} if options.document == "data-sheets" else {"overview", "hosts", "frames"}
+    return replace(inputs, undrawn_kinds=frozenset(get_args(GraphKind)) - shown, is_report_alone=True)
 
 
 def write_report_pdf(
@@ -37,7 +50,7 @@ def write_report_pdf(
     try:
         # Before the report is written: that takes long.
         find_libreoffice()
-        inputs = ProductInputs(checked_project, options, template)
+        inputs = _take_report_inputs(checked_project, options, template)
         started_products = start_products(inputs, (REPORT,))
         document = make_content(inputs, started_products, REPORT)
         data = document.content if isinstance(document.content, bytes) else b""
@@ -56,6 +69,15 @@ def write_report_workbook(checked_project: CheckedProject, options: OutputOption
     except XlsxWriterError as error:
         raise file_tree.OutputError(str(error)) from None
     write_product_file(checked_project, target, content)
+
+
+def write_slides(
+    checked_project: CheckedProject, options: OutputOptions, target: Path, template: Path | None = None
+) -> None:
+    """Write slides for a meeting. Raise OSError, or OutputError for what the user can mend."""
+    undrawn = frozenset(get_args(GraphKind)) - {"overview", "hosts"}
+    inputs = ProductInputs(checked_project, options, template, undrawn_kinds=undrawn, is_report_alone=True)
+    write_product(inputs, SLIDES, target)
 
 
 def write_site(checked_project: CheckedProject, options: OutputOptions, target: Path) -> None:

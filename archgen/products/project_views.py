@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Mapping
-from itertools import combinations
+from collections.abc import Collection, Mapping, Sequence
 from typing import TYPE_CHECKING
 
 from archgen import git
@@ -21,7 +20,7 @@ from archgen.products.output_options import OutputOptions
 
 if TYPE_CHECKING:
     from archgen.model.partner_interfaces import PartnerPair
-    from archgen.views.agreement.signature_record import SignedTag
+    from archgen.views.agreement.interface_record import SignedTag
     from archgen.views.lookup import Lookup
     from archgen.views.pages.report_outline import DetailLevel, DocumentEdition
     from archgen.views.pages.variant_chapter import VariantDifference
@@ -61,6 +60,22 @@ def make_scoped_lookup(checked_project: CheckedProject, options: OutputOptions) 
     return make_lookup(checked_project.architecture, checked_project.findings, scope)
 
 
+def list_rows(
+    checked_project: CheckedProject, options: OutputOptions, kind: str
+) -> tuple[Sequence[str], Sequence[Sequence[str]]]:
+    """Return columns and rows of a project's elements: what `archgen list --of KIND` lists."""
+    from archgen.views.tables import element_rows
+
+    lookup = make_scoped_lookup(checked_project, options)
+    if kind == "requirements" and checked_project.analysis is not None and lookup.chains_for_requirement:
+        from archgen.views.lookup import add_timing
+        from archgen.views.timing.timing_lookup import bound_chains
+
+        # Whether a requirement is met may hang on a chain's deadline.
+        lookup = add_timing(lookup, bound_chains(checked_project.analysis, checked_project.architecture))
+    return element_rows.list_element_rows(lookup, kind)
+
+
 @dataclass(frozen=True, slots=True)
 class ProjectViews:
     """The views that documents are written from."""
@@ -71,18 +86,24 @@ class ProjectViews:
 
 
 def make_views(
-    checked_project: CheckedProject, options: OutputOptions, *, undrawn_kinds: Collection[str] = ()
+    checked_project: CheckedProject,
+    options: OutputOptions,
+    *,
+    undrawn_kinds: Collection[str] = (),
+    is_report_alone: bool = False,
 ) -> ProjectViews:
     """Make the views: look-ups with timing, drawings, history, and what the documents contain.
 
-    There is no drawing of the `undrawn_kinds`.
+    There is no drawing of the `undrawn_kinds`, nor for a report alone of runs in which a chain is late.
     """
+    from archgen.products.seen_robots import read_seen_robots
     from archgen.views import drawing_set
     from archgen.views.lookup import add_timing
     from archgen.views.tables import statistics_tables
     from archgen.views.timing.timing_lookup import add_late_runs, complete_with_chains
 
-    timing_lookup = add_late_runs(complete_with_chains(checked_project.analysis, checked_project.architecture))
+    timing_lookup = complete_with_chains(checked_project.analysis, checked_project.architecture)
+    timing_lookup = timing_lookup if is_report_alone else add_late_runs(timing_lookup)
     lookup = replace(
         add_timing(make_scoped_lookup(checked_project, options), timing_lookup),
         repository=locate_repository(checked_project),
@@ -92,19 +113,22 @@ def make_views(
         lookup, options.selection, options.level or "implementation", undrawn_kinds=undrawn_kinds, depth=options.depth
     )
     all_drawings |= {chart.id: chart for chart in statistics_tables.make_growth_charts(project_history)}
-    if options.changes:
+    if options.changes and not is_report_alone:
         from archgen.views.changes.site_changes import mark_drawings
 
         all_drawings = mark_drawings(all_drawings, options.changes)
     revision = choose_revision(checked_project, options)
     edition = make_edition(checked_project, options.level, all_drawings, project_history, revision)
     signed_tags = list_signed_tags(checked_project) if options.show_history else {}
+    seen_robots, unread_record = read_seen_robots(checked_project)
     edition = replace(
         edition,
         variants=_find_differences(checked_project),
         changes=options.changes,
         date=_find_date(checked_project, options),
         signed_tags=signed_tags,
+        seen_robots=seen_robots,
+        unread_record=unread_record,
     )
     return ProjectViews(lookup, edition, all_drawings)
 
@@ -127,6 +151,7 @@ def make_edition(
 ) -> DocumentEdition:
     """Say what documents contain beside the architecture."""
     from archgen.findings import rule_pages
+    from archgen.products.seen_robots import find_seen_components
     from archgen.views.pages.report_outline import DocumentEdition
     from archgen.views.tables import statistics_tables
 
@@ -138,7 +163,9 @@ def make_edition(
         chapter_names=checked_project.chapters.order,
         project_chapters=checked_project.chapters.texts,
         drawings=drawings,
-        statistics=statistics_tables.make_statistics_tables(checked_project.architecture),
+        statistics=statistics_tables.make_statistics_tables(
+            checked_project.architecture, find_seen_components(checked_project)
+        ),
         history=project_history,
         rule_pages={
             rule.name: rule_pages.rule_page_to_markdown(rule).partition("\n")[2]
@@ -163,19 +190,27 @@ def locate_repository(checked_project: CheckedProject) -> SourceRepository | Non
 def list_signed_tags(checked_project: CheckedProject) -> Mapping[PartnerPair, tuple[SignedTag, ...]]:
     """Return the tags that record signatures of two partners, newest first, by pairs in the order of their declaration."""
     from archgen.git.tag_list import list_tags_below
-    from archgen.views.agreement.signature_record import SignedTag
+    from archgen.views.agreement.interface_record import SignedTag
 
-    partners = checked_project.architecture.partners
-    pairs = {f"{first}-{second}": (first, second) for first, second in combinations(partners, 2)}
-    pairs |= {f"{second}-{first}": (first, second) for first, second in pairs.values()}
+    order = {partner: number for number, partner in enumerate(checked_project.architecture.partners)}
     tags: dict[PartnerPair, tuple[SignedTag, ...]] = {}
     # One call for all pairs: a project of 30 partners has 435 of them.
-    for tag in list_tags_below(checked_project.root, ["signed"]) if pairs else ():
-        pair = pairs.get(tag.name.split("/")[1])
+    for tag in list_tags_below(checked_project.root, ["signed"]) if len(order) > 1 else ():
+        pair = _find_pair(order, tag.name.split("/")[1])
         if pair:
             signed_tag = SignedTag(tag.name, tag.date, tag.tagger, tag.subject, shorten_hash(tag.commit))
             tags[pair] = (*tags.get(pair, ()), signed_tag)
     return tags
+
+
+def _find_pair(order: Mapping[str, int], name: str) -> PartnerPair | None:
+    """Return the two partners whose ids a name joins, in the order of their declaration."""
+    words = name.split("-")
+    for count in range(1, len(words)):
+        first, second = "-".join(words[:count]), "-".join(words[count:])
+        if first in order and second in order and first != second:
+            return (first, second) if order[first] < order[second] else (second, first)
+    return None
 
 
 def _find_date(checked_project: CheckedProject, options: OutputOptions) -> str:

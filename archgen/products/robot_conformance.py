@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Collection, Iterable, Sequence
 from functools import partial
 from pathlib import Path
 
@@ -11,8 +11,17 @@ from archgen.conformance.accepted_differences import apply_acceptances
 from archgen.conformance.conformance_rules import RULE_NAMES
 from archgen.conformance.observed_robot import ObservedRobot
 from archgen.conformance.robot_comparison import ComparedPart, RobotComparison, compare_robot
+from archgen.conformance.seen_record import (
+    SeenDifference,
+    SeenRecordError,
+    SeenRobot,
+    replace_robots,
+    write_record,
+)
 from archgen.diagnostics.common_wording import join_words
 from archgen.diagnostics.diagnostic import Diagnostic, settle_diagnostics
+from archgen.edit.adopted_remedies import Adoption, FindingNames, plan_adoption
+from archgen.edit.import_source import list_stale_slices
 from archgen.findings import ignore_comments
 from archgen.frozen import dataclass, replace
 from archgen.git.tag_list import has_tag
@@ -20,6 +29,7 @@ from archgen.model.architecture import Architecture
 from archgen.pipeline import CheckedProject
 from archgen.products import check_findings
 from archgen.products.check_findings import ReportedFindings
+from archgen.products.seen_robots import read_seen_robots
 from archgen.regular_files import read_named_file
 
 _MAX_EXCERPT_BYTES = 1_000_000
@@ -42,17 +52,14 @@ def hold_against_robots(
     baseline_file: Path | None = None,
 ) -> ConformanceReport:
     """Compare a project with each robot; comments, settings and a baseline silence findings as in a check."""
-    variants = (each.architecture for each in checked_project.variants.values())
-    part = replace(part, other_nodes=frozenset(node.full_name for each in variants for node in each.nodes.values()))
     architecture = checked_project.architecture
-    part = replace(part, ignored=(*part.ignored, *architecture.conform.ignore))
-    comparisons = tuple(compare_robot(architecture, robot, part, checked_project.rule_options) for robot in robots)
+    comparisons = _compare_robots(checked_project, robots, part)
     all_findings = [finding for comparison in comparisons for finding in comparison.findings]
     was_compared = _list_compared(architecture, robots)
     kept_findings, accepted_count = apply_acceptances(
         all_findings, architecture.conform.accepted, was_compared, partial(has_tag, checked_project.root)
     )
-    raw_findings = _place_in_project(kept_findings, checked_project)
+    raw_findings = _place_in_project([*kept_findings, *list_stale_slices(checked_project)], checked_project)
     loaded_project = checked_project.loaded_project
     ignores = [ignore for file_ignores in loaded_project.ignores.values() for ignore in file_ignores]
     if ignores:
@@ -67,6 +74,62 @@ def hold_against_robots(
         accepted_count,
         check_findings.report_findings(replace(checked_project, findings=findings), baseline_file),
     )
+
+
+def adopt_remedies(
+    checked_project: CheckedProject, robots: Sequence[ObservedRobot], part: ComparedPart, rules: Collection[str]
+) -> Adoption:
+    """Plan what the robots know and the design does not say; of the rules that are named what differs, too, and only that.
+
+    What the project accepts, or silences by a comment, stays as it is.
+    """
+    report = hold_against_robots(checked_project, robots, part)
+    kept = {(each.rule, each.message) for each in report.reported.findings}
+    remedies = [each for comparison in report.comparisons for each in comparison.remedies]
+    chosen = [
+        each
+        for each in remedies
+        if (each.rule in rules if rules else each.is_gap) and (not each.rule or (each.rule, each.message) in kept)
+    ]
+
+    def compare(project: CheckedProject) -> FindingNames:
+        comparisons = _compare_robots(project, robots, part)
+        return frozenset((each.rule, each.message) for comparison in comparisons for each in comparison.findings)
+
+    return plan_adoption(checked_project, chosen, compare)
+
+
+def keep_report(checked_project: CheckedProject, report: ConformanceReport, name: str) -> str:
+    """Return the record of the project with what came out. Raise SeenRecordError where the one that is there cannot be read."""
+    old_robots, obstacle = read_seen_robots(checked_project)
+    if obstacle:
+        raise SeenRecordError(obstacle)
+    reported = {(each.rule, each.message): each for each in report.reported.findings}
+    robots = [
+        SeenRobot(
+            name,
+            comparison.robot.origin,
+            comparison.robot.kind,
+            comparison.ends,
+            tuple(
+                SeenDifference(each.rule, each.element or "", each.message)
+                for each in comparison.findings
+                if (each.rule, each.message) in reported
+            ),
+        )
+        for comparison in report.comparisons
+    ]
+    return write_record(replace_robots(old_robots, robots))
+
+
+def _compare_robots(
+    checked_project: CheckedProject, robots: Iterable[ObservedRobot], part: ComparedPart
+) -> tuple[RobotComparison, ...]:
+    variants = (each.architecture for each in checked_project.variants.values())
+    part = replace(part, other_nodes=frozenset(node.full_name for each in variants for node in each.nodes.values()))
+    architecture = checked_project.architecture
+    part = replace(part, ignored=(*part.ignored, *architecture.conform.ignore))
+    return tuple(compare_robot(architecture, robot, part, checked_project.rule_options) for robot in robots)
 
 
 def _list_compared(architecture: Architecture, robots: Sequence[ObservedRobot]) -> Callable[[str], bool]:

@@ -11,8 +11,8 @@ from archgen.emit.backend_manifests import Backend
 from archgen.emit.file_tree import OutputError, list_files_below
 from archgen.frozen import dataclass
 from archgen.git.object_reader import LINK_MODE, GitObjects, TreeEntry
-from archgen.pipeline import check_at_revision
-from archgen.project import NotAtRevisionError
+from archgen.pipeline import VersionCache, check_loaded_project
+from archgen.project import NotAtRevisionError, find_tracked_project, load_at_revision
 from archgen.syntax.committed_files import CommittedFiles
 from archgen.syntax.project_files import ProjectFiles
 
@@ -39,18 +39,21 @@ class TrustedRevision:
     allowed_passes: Collection[str] = ()
 
 
-def read_trusted_revision(project: Path | None, revision: str) -> TrustedRevision:
+def read_trusted_revision(
+    project: Path | None, revision: str, version_cache: VersionCache | None = None
+) -> TrustedRevision:
     """Read what a revision says about backends. A project that is new since then is allowed none.
 
     Raise `git.GitError` where it cannot be read.
     """
+    version_cache = version_cache or VersionCache()
     try:
         # The main line decides: the branch under review must not allow its own templates to run.
-        checked_project = check_at_revision(project, revision)
+        loaded_project = load_at_revision(find_tracked_project(project), revision, version_cache.parsed_slices)
     except NotAtRevisionError:
         return TrustedRevision(revision)
-    files = checked_project.loaded_project.files
-    review = checked_project.architecture.review
+    files = loaded_project.files
+    review = check_loaded_project(loaded_project, version_cache, (), has_timing=False).architecture.review
     return TrustedRevision(
         revision, review.backends, files if isinstance(files, CommittedFiles) else None, review.passes
     )

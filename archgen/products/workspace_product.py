@@ -13,17 +13,20 @@ from archgen.emit.backend_manifests import Backend
 from archgen.emit.file_tree import OutputError, refuse_file
 from archgen.emit.workspace import workspace_writing
 from archgen.emit.workspace.disk_files import DiskReader, GeneratedFile, fold_file_path
+from archgen.emit.workspace.known_fits import KnownFits
 from archgen.emit.workspace.run_record import read_other_records, read_run_record
-from archgen.emit.workspace.workspace_plan import UserChoices, WorkspacePlan, plan_workspace
+from archgen.emit.workspace.workspace_plan import STALE, FileStep, UserChoices, WorkspacePlan, plan_workspace
 from archgen.pipeline import CheckedProject
 from archgen.products.backend_choice import choose_backends, raise_problems
 from archgen.products.backend_products import make_generation_context
 from archgen.products.output_options import OutputOptions
 from archgen.products.product_writing import refuse_leaving_links
+from archgen.products.report_cache import cache_folder
 from archgen.products.trusted_backends import refuse_untrusted_pass
 from archgen.views.generation import find_view_maker, make_generation_views
 from archgen.views.generation.architecture_needs import find_unmet_needs
 from archgen.views.generation.generation_context import GenerationContext
+from archgen.views.generation.model_paths import index_model_paths, write_model_paths
 
 
 @dataclass(frozen=True, slots=True)
@@ -37,6 +40,8 @@ class WorkspaceRequest:
     only_look: bool = False
     removes_unmade: bool = True
     """Whether files go that are no longer made."""
+    usual_options: Mapping[str, str] = field(default_factory=dict)
+    """What the project says of options that are not asked for otherwise."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -49,10 +54,15 @@ class WorkspaceResult:
     findings: tuple[Diagnostic, ...] = ()
 
     @property
+    def stale_steps(self) -> tuple[FileStep, ...]:
+        """The files that are not as the architecture says, but for those that are told as conflicts."""
+        return tuple(each for each in self.plan.steps if each.verb in STALE) if self.plan else ()
+
+    @property
     def is_complete(self) -> bool:
-        """Whether the workspace is now what the architecture says, but for the user's own files."""
+        """Whether the workspace is now what the architecture says, and the user's own code fits."""
         has_errors = any(each.effective_severity is Severity.ERROR for each in self.findings)
-        return self.plan is not None and not self.plan.conflicts and not has_errors
+        return self.plan is not None and not (self.plan.conflicts or self.plan.has_unfit_code or has_errors)
 
 
 def write_workspace(
@@ -68,7 +78,7 @@ def write_workspace(
     cannot be used.
     """
     (backend,) = choose_backends(checked_project, (backend_name,), "workspace", options.trusted_revision)
-    backend = _set_options(backend, request.options)
+    backend = _set_options(backend, {**request.usual_options, **request.options})
     folder = target or checked_project.output_folder / backend.id
     refuse_leaving_links(checked_project, folder)
     if backend.passes:
@@ -145,7 +155,6 @@ def _render_files(
     """Return the files of a backend, and what could not be generated; no files where its needs do not hold."""
     from archgen.emit import text
     from archgen.emit.text.kept_answers import open_answer_store
-    from archgen.products.report_cache import cache_folder
 
     context = replace(
         make_generation_context(checked_project, options, backend),
@@ -156,7 +165,10 @@ def _render_files(
     if unmet_needs:
         return None, unmet_needs
     views, findings = _make_views(checked_project, options, backend, context)
-    files, problems = text.render_workspace(backend, views, answer_store=open_answer_store(cache_folder()))
+    paths = index_model_paths(context.architecture)
+    views = {name: write_model_paths(view, paths) for name, view in views.items()}
+    places = {path: place for place, path in paths.items()}
+    files, problems = text.render_workspace(backend, views, places, answer_store=open_answer_store(cache_folder()))
     raise_problems(problems)
     return files, findings
 
@@ -204,7 +216,7 @@ def _plan_files(
     files: Sequence[GeneratedFile], backend: Backend, folder: Path, run: str, request: WorkspaceRequest
 ) -> WorkspacePlan:
     other_backends = read_other_records(folder, backend.id)
-    for file in files:
+    for file in files if other_backends else ():
         other = other_backends.get(fold_file_path(file.path))
         if other:
             msg = f"`{file.path}` is made by the backend `{other}` in this folder, and by `{backend.id}`"
@@ -214,12 +226,16 @@ def _plan_files(
             )
     record = read_run_record(folder, backend.id)
     known_paths = {*record.files, *(file.path for file in files)}
+    fits = KnownFits(cache_folder(), folder, backend.id)
     choices = UserChoices(
         _find_named_paths(request.overwritten, folder, known_paths),
         _find_named_paths(request.kept, folder, known_paths),
         request.removes_unmade,
+        fits,
     )
-    return plan_workspace(record, run, files, DiskReader(folder), choices)
+    plan = plan_workspace(record, run, files, DiskReader(folder), choices)
+    fits.keep()
+    return plan
 
 
 def _find_named_paths(names: Sequence[str], folder: Path, known_paths: set[str]) -> frozenset[str]:

@@ -65,10 +65,9 @@ def list_library_paths(root: MappingNode) -> dict[str, ScalarNode]:
 
 
 def _list_written_paths(root: MappingNode) -> dict[str, ScalarNode]:
-    libraries = root.get("libraries")
     return {
         entry.key: path
-        for entry in list_entries(libraries)
+        for entry in list_entries(root, "libraries")
         if isinstance(entry.value, MappingNode)
         and isinstance(path := entry.value.get("path"), ScalarNode)
         and path.value is not None
@@ -105,9 +104,8 @@ def read_libraries(state: ReadingState, first_file: str) -> Iterator[LoadedLibra
 
 def _list_pathless_libraries(root: MappingNode) -> Iterator[MappingEntry]:
     """Yield libraries of which neither a path nor, as in a packed file, the content is written."""
-    libraries = root.get("libraries")
     paths = _list_written_paths(root)
-    for entry in list_entries(libraries):
+    for entry in list_entries(root, "libraries"):
         keys = entry.value.entries.keys() if isinstance(entry.value, MappingNode) else set()
         if entry.key not in paths and keys.isdisjoint(LIBRARY_SECTIONS):
             yield entry
@@ -250,6 +248,21 @@ def load_shipped_component_types(distro: str | None) -> Mapping[str, MappingEntr
                 if distro in table.packages[_get_node_text(entry.value, "package")]:
                     entries[entry.key] = entry
     return MappingProxyType(dict(sorted(entries.items())))
+
+
+@cache
+def index_shipped_programs(distro: str | None) -> Mapping[tuple[str, str], tuple[str, ...]]:
+    """Return the names of the types that ship for a distribution, by package and executable or plug-in.
+
+    Without generic ones: which messages theirs are only the running program tells.
+    """
+    index: dict[tuple[str, str], tuple[str, ...]] = {}
+    for name, entry in load_shipped_component_types(distro).items():
+        for key in ("executable", "plugin") if find_value(entry.value, "generic") is None else ():
+            program = _get_node_text(entry.value, "package"), _get_node_text(entry.value, key)
+            if program[1]:
+                index[program] = (*index.get(program, ()), name)
+    return MappingProxyType(index)
 
 
 # The trees of documents are never changed, and the history of a project reads hundreds of commits with the same line.

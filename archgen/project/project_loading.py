@@ -6,13 +6,13 @@ The settings of a loaded project as a variant has them: rules, distribution, and
 from __future__ import annotations
 
 import re
+from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 from archgen.diagnostics.diagnostic import Diagnostic, Severity, name_rule
 from archgen.diagnostics.rule_options import WrittenOption
 from archgen.diagnostics.source_span import SourceTexts, Span
-from archgen.frozen import dataclass, field, replace
+from archgen.frozen import NamedTuple, dataclass, field, replace
 from archgen.project.library_reading import (
     SHIPPED_ID,
     SHIPPED_PATH,
@@ -36,14 +36,10 @@ from archgen.syntax.yaml_tree import (
     ScalarNode,
     SequenceNode,
     YamlDocument,
+    YamlNode,
     find_value,
     list_entries,
 )
-
-if TYPE_CHECKING:
-    from collections.abc import Iterable, Iterator, Mapping
-
-    from archgen.syntax.yaml_tree import YamlNode
 
 
 @dataclass(frozen=True, slots=True)
@@ -129,20 +125,9 @@ def _finish_loading(state: ReadingState, first_file: str, libraries: tuple[Loade
     stem = state.files.root.name.removesuffix(".git") if first_file == PROJECT_FILE else Path(first_file).stem
     name_words = re.findall(r"[a-z0-9]+", stem.lower())
     slug = "_".join(name_words) if name_words and name_words[0][0].isalpha() else "_".join(["project", *name_words])
-    interface_files = [
-        file
-        for listing in _list_nodes_at(state, "ros", "interfaces")
-        if isinstance(listing, SequenceNode)
-        for pattern in listing.items
-        for file in expand_source_pattern(state, pattern)
-    ]
-    rule_entries = list(_list_rule_entries(state))
     # Read off the documents before they are merged, because shipped types and interfaces depend on the distribution.
-    # In a conflict the first value wins, as it does in merging.
-    distro = next(
-        (value.text for value in _list_nodes_at(state, "ros", "distro") if isinstance(value, ScalarNode)), None
-    )
-    libraries = (*libraries, *read_shipped_libraries(state, first_file, distro))
+    settings = _read_settings(state, [document.root for document in state.documents])
+    libraries = (*libraries, *read_shipped_libraries(state, first_file, settings.distro))
     return LoadedProject(
         files=state.files,
         first_file=first_file,
@@ -152,15 +137,7 @@ def _finish_loading(state: ReadingState, first_file: str, libraries: tuple[Loade
         sources=state.sources,
         diagnostics=tuple(state.diagnostics),
         ignores={document.file: document.ignores for document in state.documents if document.ignores},
-        rule_settings={
-            entry.key: Severity(severity.text)
-            for entry in rule_entries
-            if (severity := find_severity_setting(entry.value))
-        },
-        rule_options=read_rule_options(rule_entries),
-        rule_spans={entry.key: entry.key_span for entry in rule_entries},
-        distro=distro,
-        interface_files=tuple(dict.fromkeys(interface_files)),
+        **settings._asdict(),
         broken_files=frozenset(state.broken_files),
         lost_keys=frozenset(state.lost_keys),
         partial=state.partial,
@@ -170,16 +147,43 @@ def _finish_loading(state: ReadingState, first_file: str, libraries: tuple[Loade
     )
 
 
-def _list_rule_entries(state: ReadingState) -> Iterator[MappingEntry]:
-    """Yield the entries of all `rules:` sections."""
-    for mapping in _list_nodes_at(state, "rules"):
-        yield from list_rule_entries(mapping)
+class _Settings(NamedTuple):
+    """What is read off a project before its elements are."""
+
+    rule_settings: Mapping[str, Severity]
+    rule_options: Mapping[str, Mapping[str, WrittenOption]]
+    rule_spans: Mapping[str, Span]
+    distro: str | None
+    interface_files: tuple[str, ...]
 
 
-def list_rule_entries(rules: YamlNode | None) -> Iterator[MappingEntry]:
-    """Yield the entries of a `rules:` section, each below the name that the rule has today."""
-    for entry in list_entries(rules):
-        yield MappingEntry(name_rule(entry.key), entry.key_span, entry.value)
+def _read_settings(state: ReadingState, roots: Sequence[MappingNode]) -> _Settings:
+    """Read the settings in mappings that are merged. In a conflict the first distribution wins, as it does in merging."""
+    rule_entries = [
+        MappingEntry(name_rule(entry.key), entry.key_span, entry.value)
+        for root in roots
+        for entry in list_entries(root, "rules")
+    ]
+    listings = (find_value(root, "ros", "interfaces") for root in roots)
+    interface_files = [
+        file
+        for listing in listings
+        if isinstance(listing, SequenceNode)
+        for pattern in listing.items
+        for file in expand_source_pattern(state, pattern)
+    ]
+    distros = (find_value(root, "ros", "distro") for root in roots)
+    return _Settings(
+        rule_settings={
+            entry.key: Severity(severity.text)
+            for entry in rule_entries
+            if (severity := find_severity_setting(entry.value))
+        },
+        rule_options=read_rule_options(rule_entries),
+        rule_spans={entry.key: entry.key_span for entry in rule_entries},
+        distro=next((value.text for value in distros if isinstance(value, ScalarNode)), None),
+        interface_files=tuple(dict.fromkeys(interface_files)),
+    )
 
 
 def find_severity_setting(setting: YamlNode) -> ScalarNode | None:
@@ -200,11 +204,6 @@ def read_rule_options(rule_entries: Iterable[MappingEntry]) -> dict[str, dict[st
     return rule_options
 
 
-def _list_nodes_at(state: ReadingState, *path: str) -> Iterator[YamlNode]:
-    """Return the nodes that the documents hold at a path of keys, in the order of the documents."""
-    return (node for each in state.documents if (node := find_value(each.root, *path)) is not None)
-
-
 def changes_settings(variant: MappingEntry) -> bool:
     """Whether a variant writes or drops what is read off a project before its elements are."""
     body = variant.value
@@ -219,24 +218,11 @@ def changes_settings(variant: MappingEntry) -> bool:
 
 def adopt_settings(loaded_project: LoadedProject, root: MappingNode) -> LoadedProject:
     """Return a loaded project with the settings that its merged slices have in a variant."""
-    rules, ros = root.get("rules"), root.get("ros")
-    rule_entries = list(list_rule_entries(rules))
-    distro = find_value(ros, "distro")
-    patterns = find_value(ros, "interfaces")
     # What is wrong with a pattern is told where the project itself is read, or as a message that is not known.
     state = ReadingState(loaded_project.files, sources=loaded_project.sources)
-    interface_files = [
-        file
-        for pattern in (patterns.items if isinstance(patterns, SequenceNode) else ())
-        for file in expand_source_pattern(state, pattern)
-    ]
-    severities = {entry.key: find_severity_setting(entry.value) for entry in rule_entries}
+    settings = _read_settings(state, [root])
     return replace(
         loaded_project,
-        rule_settings={name: Severity(scalar.text) for name, scalar in severities.items() if scalar},
-        rule_options=read_rule_options(rule_entries),
-        rule_spans={entry.key: entry.key_span for entry in rule_entries},
-        distro=distro.text if isinstance(distro, ScalarNode) else None,
-        interface_files=tuple(dict.fromkeys(interface_files)),
+        **settings._asdict(),
         diagnostics=(*loaded_project.diagnostics, *state.diagnostics),
     )

@@ -30,10 +30,11 @@ def find_project(path: Path | None) -> tuple[Path, str]:
             return real_path, PROJECT_FILE
         msg = f"{path} holds no {PROJECT_FILE}: `archgen init` makes one, or name a file"
         raise ProjectNotFoundError(msg)
-    if os.path.lexists(real_path):
+    folder = Path(os.path.realpath(path.parent))
+    if os.path.lexists(real_path) and (real_path.is_relative_to(folder) or not path.is_symlink()):
         return real_path.parent, real_path.name
-    if os.path.lexists(path):  # a broken link: reading it says so
-        return Path(os.path.realpath(path.parent)), path.name
+    if os.path.lexists(path):  # a link that is broken or leads out of its folder: reading it says so
+        return folder, path.name
     msg = f"{path} does not exist"
     raise ProjectNotFoundError(msg)
 

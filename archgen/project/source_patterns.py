@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import posixpath
 import re
-from typing import TYPE_CHECKING
+from collections.abc import Iterable, Iterator
 
 from archgen.diagnostics.diagnostic import Diagnostic, Severity
 from archgen.diagnostics.suggestions import find_closest
@@ -13,13 +13,7 @@ from archgen.project.project_search import PROJECT_FILE
 from archgen.project.slice_parsing import ReadingState, find_written_keys, parse_file
 from archgen.schema import list_sections
 from archgen.syntax import file_patterns
-from archgen.syntax.yaml_tree import ScalarNode
-
-if TYPE_CHECKING:
-    from collections.abc import Iterable, Iterator
-
-    from archgen.syntax.yaml_tree import MappingEntry, YamlNode
-
+from archgen.syntax.yaml_tree import MappingEntry, ScalarNode, YamlNode
 
 SKIPPED_FOLDERS = frozenset({"backends"})
 """Folders that are not searched for slices unless `sources` names them."""

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import posixpath
 import re
+from collections.abc import Iterator
 from itertools import islice
-from typing import TYPE_CHECKING
 
 from archgen.diagnostics.common_wording import join_first
 from archgen.diagnostics.diagnostic import Diagnostic, Severity
@@ -27,12 +27,7 @@ from archgen.project.source_patterns import (
 from archgen.schema import list_sections
 from archgen.schema.language_schema import resembles_slice
 from archgen.syntax import file_patterns, yaml_parser
-from archgen.syntax.yaml_tree import MappingNode, ScalarNode, SequenceNode, find_value, list_entries
-
-if TYPE_CHECKING:
-    from collections.abc import Iterator
-
-    from archgen.syntax.yaml_tree import YamlDocument
+from archgen.syntax.yaml_tree import MappingNode, ScalarNode, SequenceNode, YamlDocument, find_value, list_entries
 
 IgnoredFile = tuple[str, str | None]
 """A file that is not read, and the section that its first key nearly names."""

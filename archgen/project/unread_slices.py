@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import posixpath
-from typing import TYPE_CHECKING
+import re
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 
 from archgen.diagnostics.common_wording import join_words
 from archgen.diagnostics.diagnostic import Diagnostic, Severity
@@ -11,16 +12,10 @@ from archgen.diagnostics.source_span import Span
 from archgen.frozen import replace
 from archgen.language.language_tables import COMMON_SECTIONS, SECTION_KINDS
 from archgen.project.project_search import PROJECT_FILE
-from archgen.project.slice_parsing import parse_slice
+from archgen.project.slice_parsing import ReadingState, parse_slice
 from archgen.schema.language_schema import list_keys, load_schema, resembles_slice
 from archgen.syntax.project_files import read_text_file
-from archgen.syntax.yaml_tree import MappingNode, list_entries
-
-if TYPE_CHECKING:
-    from collections.abc import Iterable, Iterator, Mapping, Sequence
-
-    from archgen.project.slice_parsing import ReadingState
-    from archgen.syntax.yaml_tree import MappingEntry
+from archgen.syntax.yaml_tree import MappingEntry, MappingNode, list_entries
 
 _REASONS = {
     "left_out": (
@@ -34,6 +29,7 @@ _REASONS = {
     ),
 }
 """Why files are not read, and what to do about it."""
+_PROJECT_LINE = re.compile(r"^project[ \t]*+:", re.MULTILINE)
 
 
 def name_unread_slices(
@@ -71,6 +67,9 @@ def _are(files: Sequence[str]) -> str:
 def _is_slice(state: ReadingState, file: str) -> bool:
     """Whether a file is a slice by what it holds; what it declares is kept then."""
     text = read_text_file(state.files, file).text
+    # A project of its own, mostly what `archgen build` packed: to parse it costs as much as to parse the whole project.
+    if _PROJECT_LINE.search(text):
+        return False
     document = parse_slice(file, text, state.parsed_slices).document
     if document is None:  # with a slip, or notes of another program between
         return any(f"{key}:" in text or f'{key}":' in text for key in ("components", "implements"))

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 from archgen.diagnostics.suggestions import find_closest
-from archgen.language.language_tables import SECTION_KINDS
+from archgen.language.language_tables import OTHER_WORDS, SECTION_KINDS
 from archgen.schema.language_schema import TELLING_NOTHING, list_keys, load_schema, resolve_part
 from archgen.schema.schema_wording import add_article
 from archgen.syntax.yaml_tree import MappingNode, ScalarNode
@@ -50,6 +50,11 @@ _POLICY_KEYS = {
 _PORT_USES = {"inputs": "subscribes", "outputs": "publishes"}
 """Ports, and the key at a node below which their topics stand."""
 _NODE_DEPTH = 2
+_KINDRED_SECTIONS = frozenset({"groups", "nodes", "component_types", "types", "containers"})
+"""Sections whose elements say parts of one thing: a key that stands at the wrong one of them belongs to another. A word of an element
+elsewhere, such as the `latency` of a chain, is no key of a link for all that.
+"""
+_KINDRED_KINDS = ("timing", "node", "topic_use", "type")
 _PORT_HOMES = ("type", "topic_use", "timing", "node")
 """The order at an input or an output: its message is that of its type, its topic and QoS are the node's."""
 _NAMED_ELEMENTS = {"node": "nodes", "nodes": "nodes", "type": "types", "host": "hosts", "chain": "chains"}
@@ -70,9 +75,7 @@ def find_key_home(key: str, path: KeyPath, kind: str) -> str | None:
         return f"write it at the input that reads it: `inputs: {{INPUT: {{from: ..., {key}: ...}}}}`"
     if key in _GIVER_KEYS and kind != "Output":
         return f"write it at the output that it is about: `outputs: {{OUTPUT: {{{key}: ...}}}}`"
-    # Beside the sections stands what should have a group around it: its `components` are meant, not those of a component.
-    homes = _PORT_HOMES if is_port else tuple(_HOMES) if path else ("group", *_HOMES)
-    home = _find_kind(key, homes)
+    home, key = _find_home(key, _list_homes(path, is_port=is_port))
     if home is None or port_use:
         return (
             f"{key} stand at the component; the topic of one stands at the node below `{port_use}`"
@@ -88,6 +91,14 @@ def find_key_home(key: str, path: KeyPath, kind: str) -> str | None:
         type="TYPE",
     )
     return f"write it as {place}"
+
+
+def find_meant_key(entry: MappingEntry, title: str) -> str | None:
+    """Return the key of an element that is called by another word elsewhere."""
+    if entry.key in load_schema()["properties"] and isinstance(entry.value, MappingNode):
+        return None  # a section that is indented too far
+    kinds = (kind for kind in OTHER_WORDS if load_schema()["$defs"][kind]["title"] == title)
+    return next((OTHER_WORDS[kind].get(entry.key) for kind in kinds), None)
 
 
 def find_sibling_help(entry: MappingEntry, path: KeyPath, kind: str) -> str | None:
@@ -173,6 +184,28 @@ def looks_like_frames(mapping: MappingNode) -> bool:
 def find_common_kind(keys: tuple[str, ...]) -> str | None:
     """Return the kind of element that has all of several keys, such as `component` for inputs and outputs; None where none has."""
     return next((kind for kind in _HOMES if list_keys(kind).issuperset(keys)), None) if len(keys) > 1 else None
+
+
+def _list_homes(path: KeyPath, *, is_port: bool) -> tuple[str, ...]:
+    """Return the kinds of which a key may be that stands at an element: the surest first."""
+    if is_port:
+        return _PORT_HOMES
+    if path[:1] == ("variants",):
+        path = path[3:]
+    if not path:
+        # Beside the sections stands what should have a group around it: its `components` are meant, not those of a component.
+        return ("group", *_HOMES)
+    if path[0] == "groups" and len(path) == _NODE_DEPTH:
+        return ("component", *_KINDRED_KINDS)
+    return (*_KINDRED_KINDS, "component") if path[0] in _KINDRED_SECTIONS else ()
+
+
+def _find_home(key: str, kinds: tuple[str, ...]) -> tuple[str | None, str]:
+    """Return the kind that has a key, and the key, by which a word of elsewhere is meant."""
+    if (kind := _find_kind(key, kinds)) is not None:
+        return kind, key
+    words = {kind: OTHER_WORDS.get(kind, {}).get(key) for kind in kinds}
+    return next(((kind, meant) for kind, meant in words.items() if meant), (None, key))
 
 
 def _find_kind(key: str, kinds: tuple[str, ...]) -> str | None:

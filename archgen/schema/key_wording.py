@@ -24,6 +24,19 @@ if TYPE_CHECKING:
 
 _LANGUAGE_WORDS = ("true", "false", "null", "any", "all", "none", "self")
 """Words that the pattern of ids leaves out."""
+_COMPONENT = "Component"
+_SERVED = "what a component serves is an output whose type is a service or an action: `outputs: {{NAME: PACKAGE/{part}/TYPE}}`"
+_CALLED = "what a component calls is an input that reads it: `inputs: {NAME: GROUP.COMPONENT.OUTPUT}`"
+_GIVEN = "what a component gives is an output; topics stand at nodes: `outputs: {NAME: PACKAGE/msg/TYPE}`"
+_TAKEN = "what a component takes is an input; topics stand at nodes: `inputs: {NAME: GROUP.COMPONENT.OUTPUT}`"
+_ROS_WORDS = {
+    **dict.fromkeys(("service", "services", "serves", "provides", "servers"), _SERVED.format(part="srv")),
+    **dict.fromkeys(("action", "actions", "action_servers"), _SERVED.format(part="action")),
+    **dict.fromkeys(("call", "calls", "clients", "service_clients", "action_clients"), _CALLED),
+    **dict.fromkeys(("publish", "publishes", "publishers", "topics"), _GIVEN),
+    **dict.fromkeys(("subscribe", "subscribes", "subscribers", "subscriptions"), _TAKEN),
+}
+"""What users of ROS write at a component, and what says it there."""
 
 
 def diagnose_unknown_keys(
@@ -69,12 +82,14 @@ def diagnose_unknown_key(entry: MappingEntry, schema_part: dict[str, Any], path:
     if odd_character is not None:
         return odd_character
     home = key_places.find_key_home(entry.key, path, schema_part["title"])
-    guess = _guess_key(entry, known_keys, path)
+    meant = key_places.find_meant_key(entry, schema_part["title"])
+    guess = f"did you mean `{meant}`?" if meant else _guess_key(entry, known_keys, path)
     # The surest first: what the key holds, then where else it is a key. Between sections one letter tells more.
     help_line = (
         _find_key_help(entry, known_keys)
+        or (_ROS_WORDS.get(entry.key) if schema_part["title"].startswith(_COMPONENT) else None)
         or key_places.find_sibling_help(entry, path, schema_part["title"])
-        or (home if home and path and not _is_one_slip(entry.key, known_keys) else guess or home)
+        or (home if home and path and not meant and not _is_one_slip(entry.key, known_keys) else guess or home)
         or f"{'its keys' if path else 'the sections'} are {join_quoted(known_keys)}"
     )
     return Diagnostic("unknown-key", message, entry.key_span, help=help_line, element=element)

@@ -30,6 +30,23 @@ def resolve_part(schema_part: dict[str, Any]) -> dict[str, Any]:
     return load_schema()["$defs"][schema_part["$ref"].rpartition("/")[2]]  # type: ignore[no-any-return]
 
 
+def find_part_schema(part: str, key: str | None = None) -> dict[str, Any]:
+    """Return what the schema says of a part of the language, or of a key of it; empty where it says nothing."""
+    name, _, inner = part.removesuffix("[]").partition(".")
+    schema_part = load_schema()["$defs"].get(name, load_schema())
+    if inner:
+        schema_part = _find_property(schema_part, inner)
+    if part.endswith("[]"):
+        schema_part = resolve_part(schema_part).get("items", {})
+    return schema_part if key is None else _find_property(schema_part, key)
+
+
+def _find_property(schema_part: dict[str, Any], key: str) -> dict[str, Any]:
+    resolved = resolve_part(schema_part)
+    found = resolved.get("properties", {}).get(key, resolved.get("additionalProperties"))
+    return found if isinstance(found, dict) else {}
+
+
 @functools.cache
 def list_keys(kind: str) -> frozenset[str]:
     """Return the keys that elements of a kind have."""

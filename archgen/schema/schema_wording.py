@@ -160,7 +160,10 @@ def _find_container_help(name: str, node: YamlNode, schema_part: dict[str, Any])
         if not node.items:
             return "write `{}` for none"
         if "propertyNames" in schema_part or isinstance(schema_part.get("additionalProperties"), dict):
-            return f"{name} is keyed by id: write `id: ...` lines instead of a list"
+            ids = [entry.text for entry in node.items if isinstance(entry, ScalarNode)]
+            is_short = len(ids) == len(node.items) <= _SHORT_LIST and all(map(re.compile(r"[\w-]+\Z").match, ids))
+            entries = f"`{{{', '.join(f'{each}: {{}}' for each in ids)}}}`" if is_short else "`id: ...` lines"
+            return f"{name} is keyed by id: write {entries} instead of a list"
         return (
             f"its keys are {join_quoted(tuple(schema_part['properties']))}" if schema_part.get("properties") else None
         )
@@ -175,6 +178,8 @@ def _find_container_help(name: str, node: YamlNode, schema_part: dict[str, Any])
     return str(schema_part["patternErrorMessage"]) if "patternErrorMessage" in schema_part else None
 
 
+_SHORT_LIST = 6
+"""So many ids are written out."""
 _LISTS_OF_ELEMENTS = frozenset({"an entry of `inputs`", "an entry of `outputs`", "an entry of `components`"})
 
 

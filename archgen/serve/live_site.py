@@ -14,15 +14,16 @@ from archgen.emit.site.chapter_html import ChapterWriter
 from archgen.emit.site.page_links import renew_ids
 from archgen.emit.site.script_files import EXPLORER_ANCHOR
 from archgen.frozen import dataclass, field, replace
-from archgen.pipeline import CheckedProject, UnknownVariantError, VersionCache
+from archgen.live.file_watch import WatchedPlaces, join_paths
+from archgen.live.warm_project import WarmProject
+from archgen.pipeline import CheckedProject, UnknownVariantError
 from archgen.products.compared_versions import ProjectVersion
 from archgen.products.comparison_documents import read_version_before
 from archgen.products.output_options import OutputOptions
 from archgen.project import ProjectNotFoundError
-from archgen.project.project_search import PROJECT_FILE, find_project
+from archgen.project.project_search import PROJECT_FILE
 from archgen.resources import resource_path
 from archgen.serve.error_notes import LiveStatus, list_error_notes
-from archgen.serve.file_watch import WatchedPlaces, join_paths
 from archgen.serve.live_pictures import LivePictures
 from archgen.serve.project_state import (
     ProjectState,
@@ -66,10 +67,10 @@ class LiveSite:
         `since` is a version: the site shows what changed since. It is read once, by `start`. `variants` are those in
         which the project is shown; none is the project with all of them.
         """
-        self._root, self._first_file = find_project(path)
+        self._project = WarmProject(path)
+        self._root, self._first_file = self._project.root, self._project.first_file
         self._path, self._options, self._since, self._variants = path, options, since, variants
         self._old_version: ProjectVersion | None = None
-        self._cache = VersionCache()
         self._shared = _Shared()
         self._index_lock = threading.Lock()
         self._counter = 0
@@ -130,7 +131,7 @@ class LiveSite:
     def refresh(self) -> None:
         """Read the files as they are now. What is not sound is not shown: the last sound state stays."""
         try:
-            checked_project = read_project(self._path, self._cache, self._variants)
+            checked_project = read_project(self._project, self._variants)
         except (ProjectNotFoundError, UnknownVariantError) as error:
             # At the start a variant that is not there is a slip; later somebody takes it out, or renames it.
             if isinstance(error, UnknownVariantError) and self._shared.state is None:
@@ -138,7 +139,6 @@ class LiveSite:
             self._tell_failure(str(error))
             return
         self.checked_project = checked_project
-        self._forget_old_slices(checked_project)
         is_sound = not checked_project.structural_errors
         last_state = self._shared.state
         try:
@@ -163,12 +163,6 @@ class LiveSite:
             note = {"place": "", "message": message, "help": "", "rule": "", "line": "", "column": 0}
             self._shared.status = replace(self._shared.status, errors=(note,), further_errors=0, is_outdated=True)
         self._announce()
-
-    def _forget_old_slices(self, checked_project: CheckedProject) -> None:
-        """Forget the files as they were: a day of editing has thousands of versions."""
-        for file, text in list(self._cache.parsed_slices):
-            if checked_project.sources.text_of(file) != text:
-                del self._cache.parsed_slices[file, text]
 
     def _announce(self) -> None:
         """Tell all readers that there is something new to see."""

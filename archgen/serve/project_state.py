@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-from pathlib import Path
-
 from archgen.frozen import dataclass, replace
+from archgen.live.warm_project import WarmProject
 from archgen.model.project_history import History
 from archgen.model.selector_evaluation import Selection
-from archgen.pipeline import CheckedProject, VersionCache, check_project, stand_in_variants
+from archgen.pipeline import CheckedProject, stand_in_variants
 from archgen.products import project_views
 from archgen.products.compared_versions import ProjectVersion
 from archgen.products.comparison_documents import list_changes_since
@@ -39,15 +38,15 @@ class SelectionError(ValueError):
     """What the selector names is not there; the message says why."""
 
 
-def read_project(path: Path | None, version_cache: VersionCache, variants: tuple[str, ...]) -> CheckedProject:
-    """Return the project at a path as it stands in some of its variants; with all of them where none is named.
+def read_project(warm_project: WarmProject, variants: tuple[str, ...]) -> CheckedProject:
+    """Return a project as it stands in some of its variants; with all of them where none is named.
 
     Raise `project.ProjectNotFoundError`, and `pipeline.UnknownVariantError` where it has one of them not.
     """
-    checked_project = check_project(path, version_cache, variants or None)
+    checked_project = warm_project.check(variants or None)
     if not variants:
         return checked_project
-    return stand_in_variants(checked_project, variants, version_cache.analysis_memory)
+    return stand_in_variants(checked_project, variants, warm_project.cache.analysis_memory)
 
 
 def make_state(checked_project: CheckedProject, options: OutputOptions, last: ProjectState | None) -> ProjectState:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from functools import cached_property
 
 from archgen.emit import site
@@ -14,7 +14,7 @@ from archgen.serve.project_state import ProjectState
 from archgen.views.explorer import make_explorer_map
 from archgen.views.pages.site_pages import make_pages
 from archgen.views.search import make_search_entries
-from archgen.views.shapes import Figure, Page, Section
+from archgen.views.shapes import Block, Figure, Page, Section
 
 
 @dataclass(frozen=True)
@@ -67,9 +67,15 @@ def make_index(state: ProjectState) -> SiteIndex:
 def list_page_drawings(page: Page) -> Iterator[str]:
     """Yield the ids of the drawings that a page shows."""
     for card in page.dashboard.cards if page.dashboard else ():
-        yield from (block.graph for block in card.blocks if isinstance(block, Figure))
+        yield from _list_graphs(card.blocks)
     pending_sections: list[Section] = [page.section]
     while pending_sections:
         section = pending_sections.pop()
-        yield from (block.graph for block in section.blocks if isinstance(block, Figure))
+        yield from _list_graphs(section.blocks)
         pending_sections += section.sections
+
+
+def _list_graphs(blocks: Iterable[Block]) -> Iterator[str]:
+    for block in blocks:
+        if isinstance(block, Figure):
+            yield from filter(None, (block.graph, block.narrow))

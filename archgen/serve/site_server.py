@@ -80,8 +80,9 @@ _FIXED_HEADERS = {
     "Referrer-Policy": "no-referrer",
     "Cross-Origin-Resource-Policy": "same-origin",
     "Cross-Origin-Opener-Policy": "same-origin",
-    "Content-Security-Policy": "frame-ancestors 'none'",
 }
+_FRAMING_EDITORS = "vscode-webview: https://*.vscode-cdn.net"
+"""Where Visual Studio Code, on the desktop and in the browser, frames a page beside the text."""
 _MAX_QUESTION_BYTES = 100_000
 _MAX_STREAMS = 100
 """So many pages may wait for news at once: each holds a thread."""
@@ -98,11 +99,12 @@ class SiteServer(ThreadingHTTPServer):
     # On Windows this would let two servers share one port.
     allow_reuse_address = sys.platform != "win32"
 
-    def __init__(self, live_site: LiveSite, host: str, port: int) -> None:
-        """Take the port (0: any that is free), and answer nobody yet."""
+    def __init__(self, live_site: LiveSite, host: str, port: int, *, in_editor: bool = False) -> None:
+        """Take the port (0: any that is free), and answer nobody yet. Only an editor may frame the pages, where one does."""
         self.address_family = socket.AF_INET6 if ":" in host else socket.AF_INET
         super().__init__((host, port), _RequestHandler)
         self.live_site = live_site
+        self.framed_by = _FRAMING_EDITORS if in_editor else "'none'"
         self.served_names = (host, socket.gethostname()) if host not in {"localhost", "127.0.0.1", "::1"} else (host,)
         self.streams = threading.BoundedSemaphore(_MAX_STREAMS)
         self._connections = threading.BoundedSemaphore(MAX_CONNECTIONS)
@@ -292,7 +294,8 @@ class _RequestHandler(BaseHTTPRequestHandler):
 
     def _send_head(self, status: HTTPStatus, headers: dict[str, str]) -> None:
         self.send_response(status)
-        for name, value in {**_FIXED_HEADERS, **headers}.items():
+        policy = f"frame-ancestors {self.server.framed_by}"
+        for name, value in {**_FIXED_HEADERS, "Content-Security-Policy": policy, **headers}.items():
             self.send_header(name, value)
         self.end_headers()
 

@@ -54,7 +54,7 @@ def find_witnesses(analysis: Analysis, results: Iterable[ChainResult]) -> dict[s
     if analysis.endless or not asked:
         return {}
     # Rules, pages and comparisons ask of the same system one after the other.
-    for system, known_chains, late_runs in _last_searches:
+    for system, known_chains, late_runs in tuple(_last_searches):  # another thread may add to it
         if system is analysis.system and known_chains == asked:
             return late_runs
     late_runs = _search_late_runs(analysis, asked)

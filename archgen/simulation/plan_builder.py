@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Mapping
 from fractions import Fraction
 
-from archgen.simulation.callback_numbering import CallbackNumbering
 from archgen.simulation.simulation_plan import (
     INACTIVE,
     MAX_UNIT_NS,
@@ -23,7 +22,7 @@ from archgen.simulation.simulation_plan import (
     PlannedWire,
     SimulationPlan,
 )
-from archgen.simulation.thread_placement import ThreadPlacement
+from archgen.simulation.thread_placement import CallbackNumbering, ThreadPlacement
 from archgen.timing.system.timing_system import Activity, Arc, TimingSystem, is_selective_arc, name_queue
 
 _SECOND = 10**9

@@ -125,11 +125,8 @@ def _figures_to_json(figures: ChainFigures) -> SimulationJson:
 
 
 def _activity_to_json(result: SimulationResult, analysis: Analysis, activity_id: str) -> SimulationJson:
-    observed, response, rates = (
-        result.activities[activity_id],
-        analysis.responses.get(activity_id),
-        analysis.paces.get(activity_id),
-    )
+    observed = result.activities[activity_id]
+    response, rates = analysis.responses.get(activity_id), analysis.paces.get(activity_id)
     return {
         "jobs": observed.jobs,
         "rate": float(observed.rate),

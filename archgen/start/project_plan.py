@@ -124,7 +124,13 @@ _SECTION_HINTS = {
 
 
 def example_files(answers: StartAnswers) -> dict[str, bytes]:
-    """Return the files of a project that begins with an example."""
+    """Return the files of a project that begins with an example, or with groups that are empty."""
+    if answers.is_empty:
+        bodies = {
+            group.id: {"title": group.title, **({"owner": group.owner} if group.owner else {}), "components": {}}
+            for group in answers.groups
+        }
+        return imported_files(answers, {"groups": bodies})
     sections = {"requirements": {"R-1": _EXAMPLE_REQUIREMENT}}
     return {
         PROJECT_FILE: _fill_project_file(answers, sections),
@@ -169,12 +175,18 @@ def _first_implemented(node: Mapping[str, Any]) -> str:
     return str(implements if isinstance(implements, str) else implements[0])
 
 
+_SCHEMA_LINE = f"# yaml-language-server: $schema=../{SCHEMA_FILE}\n"
+
+
 def _write_slice(name: str, group: Mapping[str, Any], nodes: Mapping[str, Any]) -> str:
     root = block_documents.BlockMapping()
     group_mapping = root.add_mapping("groups").add_mapping(name)
     for key, value in group.items():
         if key != "components":
             group_mapping.add_entry(key, value)
+    if not group["components"]:
+        group_mapping.add_entry("components", None, "# `archgen new component` adds one")
+        return block_documents.write_document(root, _SCHEMA_LINE)
     components = group_mapping.add_mapping("components")
     for component, body in group["components"].items():
         _add_component(components.add_mapping(component, is_spaced=True), body)
@@ -184,7 +196,7 @@ def _write_slice(name: str, group: Mapping[str, Any], nodes: Mapping[str, Any]) 
             node_mapping = node_section.add_mapping(node)
             for key, value in body.items():
                 node_mapping.add_entry(key, value)
-    return block_documents.write_document(root, f"# yaml-language-server: $schema=../{SCHEMA_FILE}\n")
+    return block_documents.write_document(root, _SCHEMA_LINE)
 
 
 def _add_component(component: block_documents.BlockMapping, body: Mapping[str, Any]) -> None:

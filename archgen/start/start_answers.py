@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 from typing import Literal
 
+from archgen.diagnostics.safe_text import replace_surrogates
 from archgen.emit.codeowners_file import REVIEWER_HANDLE
 from archgen.frozen import dataclass, replace
 from archgen.model import element_ids
@@ -46,6 +47,8 @@ class StartAnswers:
     partners: tuple[PartnerAnswer, ...]
     groups: tuple[GroupAnswer, ...]
     forge: ForgeName
+    is_empty: bool = False
+    """Whether the groups have no components yet, and no requirement shows how one looks."""
 
 
 EXAMPLE_GROUPS = ("sensing", "driving")
@@ -119,11 +122,14 @@ def collect_answers(  # noqa: PLR0913 - one for each flag
     groups: Iterable[str] = (),
     distro: str | None = None,
     forge: ForgeName = "github",
+    is_empty: bool = False,
 ) -> StartAnswers:
     """Collect answers from flags and the folder's name, with defaults for the rest. Raise ValueError."""
+    # Names of files and words of the command line may be no UTF-8: what is written is.
+    folder, title = replace_surrogates(folder), replace_surrogates(title or "")
     name = element_ids.make_id(folder, "robot")
-    parsed_partners = tuple(parse_partner(words) for words in partners)
-    parsed_groups = tuple(parse_group(words, parsed_partners) for words in groups)
+    parsed_partners = tuple(parse_partner(replace_surrogates(words)) for words in partners)
+    parsed_groups = tuple(parse_group(replace_surrogates(words), parsed_partners) for words in groups)
     require_distinct(parsed_partners, "partner")
     require_distinct(parsed_groups, "group")
     # Example groups show two owners where there are two partners.
@@ -133,10 +139,9 @@ def collect_answers(  # noqa: PLR0913 - one for each flag
     )
     # A name with a blank or an accent is typed as a title; `my-robot` is not.
     is_title = " " in folder.strip() or not folder.isascii()
-    project_title = (title or "").strip() or (folder.strip() if is_title else name.replace("_", " ").capitalize())
-    return StartAnswers(
-        name, project_title, distro or DEFAULT_DISTRO, parsed_partners, parsed_groups or example_groups, forge
-    )
+    project_title = title.strip() or (folder.strip() if is_title else name.replace("_", " ").capitalize())
+    first_groups = parsed_groups or (() if is_empty else example_groups)
+    return StartAnswers(name, project_title, distro or DEFAULT_DISTRO, parsed_partners, first_groups, forge, is_empty)
 
 
 DEFAULT_DISTRO = "jazzy"

@@ -10,6 +10,7 @@ from itertools import compress
 from pathlib import PurePosixPath
 from typing import TYPE_CHECKING
 
+from archgen.diagnostics.natural_order import order_naturally
 from archgen.frozen import NamedTuple
 
 if TYPE_CHECKING:
@@ -51,9 +52,12 @@ def expand_pattern(files: ProjectFiles, pattern: str, skipped_folders: frozenset
     matching_names = (
         name for name in _walk_files(files, prefix, skipped_folders) if _matches_path(path_pattern, name.split("/"))
     )
-    # Sorted name by name, not as strings: `a/b` comes before `a-b/c`, as in a listing of folders.
+    # Sorted name by name, not as strings: `a/b` comes before `a-b/c`, as in a listing of folders, and g2 before g10.
     return tuple(
-        sorted((f"{prefix}/{name}" if prefix else name for name in matching_names), key=lambda name: name.split("/"))
+        sorted(
+            (f"{prefix}/{name}" if prefix else name for name in matching_names),
+            key=lambda name: [order_naturally(part) for part in name.split("/")],
+        )
     )
 
 

@@ -65,8 +65,8 @@ def read_ignore_comments(file: str, text: str, quoted_ranges: Sequence[tuple[int
         yield IgnoreComment(rule_names, match[2].strip(), line_starts.span_between(file, match.start(), end))
 
 
-def read_comments(text: str, quoted_ranges: Sequence[tuple[int, int]]) -> Iterator[str]:
-    """Yield all comments, without the blanks at their ends; `quoted_ranges` are as for `read_ignore_comments`."""
+def find_comments(text: str, quoted_ranges: Sequence[tuple[int, int]]) -> Iterator[tuple[int, str]]:
+    """Yield where each comment begins, and it without the blanks at its end; `quoted_ranges` as `read_ignore_comments`."""
     quoted_starts = [start for start, _ in quoted_ranges]
     position = 0
     while match := _COMMENT.search(text, position):
@@ -75,7 +75,7 @@ def read_comments(text: str, quoted_ranges: Sequence[tuple[int, int]]) -> Iterat
         # Behind a quoted `#` there may be a comment on the same line.
         position = max(match.start() + 1, quoted_ranges[preceding][1]) if is_quoted else match.end()
         if not is_quoted:
-            yield match[0].rstrip()
+            yield match.start(), match[0].rstrip()
 
 
 def may_hold_ignore_comments(text: str) -> bool:

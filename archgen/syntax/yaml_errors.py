@@ -196,6 +196,11 @@ def describe_missing_colon(key: str) -> tuple[str, str]:
     if position is not None and ":" in key[:position]:
         character = odd_characters.name_character(key[position])
         return f"{character} stands in `{key}`", f"write `{odd_characters.replace_odd_characters(key)}`"
+    if key.endswith(">"):
+        return (
+            f"the key `{key}` has no `:`",
+            'within braces a generic type of two stands in quotes, since its comma ends the value: "Pair<A, B>"',
+        )
     return f"the key `{key}` has no `:`", "write `key: value`; a list stands in brackets: [a, b]"
 
 

@@ -27,7 +27,7 @@ from archgen.syntax.yaml_tree import (
 )
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
+    from collections.abc import Callable, Iterator
 
     from archgen.syntax.yaml_tree import YamlNode
 
@@ -91,7 +91,7 @@ def list_comments(text: str) -> tuple[str, ...]:
     walk = _TreeWalk("", hidden_breaks[0])
     # A broken text has the quoted ranges up to where it breaks.
     _run_walk(walk, hidden_breaks[1])
-    return tuple(yaml_comments.read_comments(text, walk.quoted_ranges))
+    return tuple(comment for _, comment in yaml_comments.find_comments(text, walk.quoted_ranges))
 
 
 def _check_root(walk: _TreeWalk) -> MappingNode | None:
@@ -124,6 +124,14 @@ def _make_parser(text: str) -> Any:  # noqa: ANN401 - two classes that share not
 
         return CParser(text)
     return yaml.Loader(text)
+
+
+def list_events(text: str) -> Iterator[tuple[Any, int, int]]:
+    """Yield PyYAML's events of a text that can be read, each with the offsets at which it begins and ends."""
+    parser = _make_parser(_hide_line_breaks(text)[0])
+    while not isinstance(event := parser.get_event(), yaml.StreamEndEvent):
+        start, end = event.start_mark, event.end_mark
+        yield event, start.index, end.index
 
 
 def _run_walk(walk: _TreeWalk, restore: dict[int, int]) -> None:

@@ -23,5 +23,5 @@ Read the folders in this order; each one imports only from those before it and f
 - `search`: what is found by analysing changes. `change_trials` (tries them), `run_configurations` and `proposals` (how things
   would have to run for chains to be in time), `chain_budgets` (how much each element may take).
 
-`analysis` holds the results of one run, `run_analysis` makes them. docs/timing.md has the formulas and their sources.
+`analysis` holds the results of one run, `run_analysis` makes them. docs/timing_bounds.md has the formulas and their sources.
 """

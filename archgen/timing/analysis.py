@@ -9,11 +9,12 @@ from typing import TYPE_CHECKING, Literal
 from archgen.diagnostics.source_span import NO_SPAN, Span
 from archgen.frozen import NamedTuple, dataclass, field, replace
 from archgen.model.declared_timing import ActivityBehaviour, SchedulingOrder
+from archgen.model.node import Endpoint
 from archgen.model.quantity import write_share
 from archgen.timing.figures.figure_wording import describe_timing_value, format_duration
-from archgen.timing.figures.response_tier import ResponseTier
-from archgen.timing.figures.timing_values import UNKNOWN_VALUE, TimingValue
+from archgen.timing.figures.timing_values import UNKNOWN_VALUE, ResponseTier, TimingValue
 from archgen.timing.figures.value_arithmetic import is_known_bound
+from archgen.timing.system import activity_builder
 from archgen.timing.system.timing_system import Arc, TimingSystem
 
 if TYPE_CHECKING:
@@ -325,3 +326,9 @@ class ChainResult:
         if self.deadline is None or self.deadline.value is None or self.bound.value is None:
             return None
         return self.deadline.value - self.bound.value if is_known_bound(self.bound) else None
+
+
+def find_pace(analysis: Analysis, activity_names: activity_builder.ActivityNames, endpoint: Endpoint) -> EventPace:
+    """Return how often something is published at an endpoint."""
+    activity = activity_builder.activity_of_endpoint(activity_names, endpoint)
+    return analysis.outputs.get((activity, activity_builder.endpoint_key(endpoint)), EventPace(None))

@@ -7,8 +7,10 @@ from typing import Literal
 
 from archgen.model.selector_evaluation import Selection
 from archgen.views import graphs
+from archgen.views.graphs import host_rack, partner_matrix
 from archgen.views.lookup import Lookup
-from archgen.views.picture_shapes import Drawing, Graph, GraphKind
+from archgen.views.picture_shapes import UPRIGHT, Drawing, Graph, GraphKind
+from archgen.views.sequences import lane_sheets
 from archgen.views.sequences.sequence_charts import make_sequence_charts
 from archgen.views.timing import chain_charts
 
@@ -42,8 +44,13 @@ def make_drawings(
         lookup.architecture, selection, lookup.findings, lookup.timing, undrawn_kinds=undrawn_kinds, depth=depth
     )
     timing_charts = chain_charts.make_timing_charts(lookup)
-    sequences = make_sequence_charts(lookup, selection.components if selection else None)
+    charts = make_sequence_charts(lookup, selection.components if selection else None)
+    sequences = [sheet for chart in charts for sheet in lane_sheets.choose_sequences(lookup, chart)]
     drawings_by_id: dict[str, Drawing] = {graph.id: graph for graph in element_graphs}
+    if selection is None and partner_matrix.is_too_dense(lookup):
+        drawings_by_id |= {each.id: each for each in partner_matrix.draw_partner_matrices(lookup)}
+    if selection is None:
+        drawings_by_id |= {each.id: each for each in host_rack.draw_host_racks(lookup)}
     drawings_by_id |= {chart.id: chart for chart in timing_charts} | {chart.id: chart for chart in sequences}
     # Charts of chains stay: the report on the functional level has a chapter on chains, too.
     return (
@@ -78,4 +85,4 @@ def _is_implementation_drawing(drawing: Drawing) -> bool:
 
 def is_implementation_id(drawing_id: str) -> bool:
     """Whether a drawing of this id, if there is one, shows what the functional level leaves out."""
-    return drawing_id.partition("/")[0] in {"ros", "hosts", "implementation", "timing", "load"}
+    return drawing_id.partition("/")[0].removesuffix(UPRIGHT) in {"ros", "hosts", "implementation", "timing", "load"}

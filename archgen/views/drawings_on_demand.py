@@ -11,17 +11,17 @@ from typing import Literal
 from archgen.model.selector_evaluation import Selection, SelectorEvaluator
 from archgen.views import drawing_set, graphs
 from archgen.views.changes.site_changes import SiteChanges, mark_drawing
-from archgen.views.graphs import selection_graphs, timing_graphs
+from archgen.views.graphs import host_rack, partner_matrix, selection_graphs, timing_graphs
 from archgen.views.graphs.graph_folding import fold_graph
 from archgen.views.lookup import Lookup, make_lookup
-from archgen.views.picture_shapes import Drawing, Graph
+from archgen.views.picture_shapes import UPRIGHT, Drawing, Graph
+from archgen.views.sequences import lane_sheets
 from archgen.views.sequences.sequence_charts import CHART_PREFIX, make_sequence_chart
 from archgen.views.timing import chain_charts
 
 # One without boxes is not shown: there may be neither hosts nor frames.
 _WHOLE_GRAPHS = {
     "ros": graphs.draw_ros_graph,
-    "hosts": graphs.draw_hosts,
     "frames": graphs.draw_frames,
     "start_up": graphs.draw_start,
 }
@@ -89,11 +89,18 @@ class DrawingsOnDemand(Mapping[str, Drawing]):
         """Yield a drawing and whatever can only be made together with it."""
         family, _, name = drawing_id.partition("/")
         made_drawings: Iterable[Drawing | None]
-        if family in {"timing", "chains", "load"}:
+        if family.removesuffix(UPRIGHT) == "overview" and partner_matrix.is_too_dense(self._graph_lookup):
+            made_drawings = partner_matrix.draw_partner_matrices(self._graph_lookup)
+        elif family.removesuffix(UPRIGHT) == "hosts":
+            made_drawings = host_rack.draw_host_racks(self._graph_lookup)
+        elif family in {"timing", "chains", "load"}:
             made_drawings = self._make_timing_drawings(family)
         elif f"{family}/" == CHART_PREFIX:
+            name = name.removesuffix(UPRIGHT)
             has_steps = name in self._lookup.steps.by_use_case
-            made_drawings = (make_sequence_chart(self._lookup, name),) if has_steps else ()
+            made_drawings = (
+                lane_sheets.choose_sequences(self._lookup, make_sequence_chart(self._lookup, name)) if has_steps else ()
+            )
         else:
             made_drawings = (self._draw_graph(family, name),)
         yield from (drawing for drawing in made_drawings if drawing and self._is_shown(drawing))
@@ -121,6 +128,8 @@ class DrawingsOnDemand(Mapping[str, Drawing]):
         match family:
             case "overview":
                 return fold_graph(graphs.draw_overview(lookup))
+            case "overview_upright":
+                return fold_graph(graphs.draw_overview(lookup, "top-bottom"))
             case "components":
                 return fold_graph(graphs.draw_components(lookup))
         draw_whole = _WHOLE_GRAPHS.get(family)

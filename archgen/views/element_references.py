@@ -73,7 +73,8 @@ def find_owners(architecture: Architecture, element_id: str | None) -> tuple[str
     component = architecture.components.get(port.component if port else name)
     component = component or architecture.shells.get(name) or _find_shell(architecture, name)
     element = component or architecture.nodes.get(name) or architecture.groups.get(name)
-    return element.owners if element else ()
+    link = architecture.links.get(name)
+    return element.owners if element else link.owners if link else ()
 
 
 def answering_cell(lookup: Lookup, element_id: str | None, place: Span) -> Inlines:
@@ -83,6 +84,16 @@ def answering_cell(lookup: Lookup, element_id: str | None, place: Span) -> Inlin
     architecture, name = lookup.architecture, element_id or ""
     if not architecture.partners:
         return ()
+    if owners := find_answering(lookup, name, place):
+        return inline_text.owner_links(architecture, owners)
+    reference = find_reference(architecture, name) if name else None
+    what = f"the {split_anchor(reference)[0].replace('_', ' ')} {name}" if reference else place.file or "this"
+    return (Text(f"who answers for {what}?", muted=True),)
+
+
+def find_answering(lookup: Lookup, name: str, place: Span) -> tuple[str, ...]:
+    """Return the partners who have to act on what is said of an element at a place; empty where nobody can be named."""
+    architecture = lookup.architecture
     for owners in (
         find_owners(architecture, name),
         _find_concerned(lookup, name),
@@ -90,10 +101,8 @@ def answering_cell(lookup: Lookup, element_id: str | None, place: Span) -> Inlin
         tuple(architecture.partners) if len(architecture.partners) == 1 else (),
     ):
         if owners:
-            return inline_text.owner_links(architecture, tuple(dict.fromkeys(owners)))
-    reference = find_reference(architecture, name) if name else None
-    what = f"the {split_anchor(reference)[0].replace('_', ' ')} {name}" if reference else place.file or "this"
-    return (Text(f"who answers for {what}?", muted=True),)
+            return tuple(dict.fromkeys(owners))
+    return ()
 
 
 def _find_concerned(lookup: Lookup, name: str) -> tuple[str, ...]:
@@ -103,8 +112,7 @@ def _find_concerned(lookup: Lookup, name: str) -> tuple[str, ...]:
     architecture = lookup.architecture
     results = (result for result in (lookup.timing.chains if lookup.timing else ()) if result.id == name)
     if (result := next(results, None)) and result.terms and lookup.timing:
-        activity = lookup.timing.analysis.system.activities.get(find_deciding_term(result).activity)
-        return list_node_owners(architecture, activity.node) if activity else ()
+        return list_activity_owners(lookup, find_deciding_term(result).activity)
     if name in architecture.chains:
         return next(
             (
@@ -137,6 +145,12 @@ def list_node_owners(architecture: Architecture, node_id: str) -> tuple[str, ...
         return ()
     components = (architecture.components.get(name) for name in node.implements)
     return node.owners or tuple(dict.fromkeys(owner for each in components if each for owner in each.owners))
+
+
+def list_activity_owners(lookup: Lookup, activity_id: str) -> tuple[str, ...]:
+    """Return who owns what an activity belongs to."""
+    activity = lookup.timing.analysis.system.activities.get(activity_id) if lookup.timing else None
+    return list_node_owners(lookup.architecture, activity.node) if activity else ()
 
 
 def _find_file_owners(architecture: Architecture, file: str) -> tuple[str, ...]:

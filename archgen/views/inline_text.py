@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from functools import lru_cache
 from itertools import chain
 
@@ -75,6 +75,12 @@ def join_inlines(items: Iterable[Inlines], separator: str = ", ") -> Inlines:
         return runs[0] if runs else ()
     between = share_text(separator)
     return tuple(chain.from_iterable([(between, *run) if index else run for index, run in enumerate(runs)]))
+
+
+def join_first(items: Sequence[Inlines], limit: int = 3) -> Inlines:
+    """Join the first pieces of text with commas, and count the others."""
+    rest = (Text(f" and {len(items) - limit} more"),) if len(items) > limit else ()
+    return (*join_inlines(items[:limit]), *rest)
 
 
 def join_lines(items: Iterable[Inlines]) -> Inlines:
@@ -222,6 +228,11 @@ def list_qos_settings(qos: Qos) -> list[str]:
 def format_qos_cell(qos: Qos) -> Inlines:
     """Describe a quality of service for a table cell; a default that nobody wrote is muted."""
     return (Text(format_qos(qos)),) if qos.written else (Text("default", muted=True),)
+
+
+def cut_text(text: str, characters: int) -> str:
+    """Return a text of at most so many characters; one that is cut ends in an ellipsis."""
+    return text if len(text) <= characters else f"{text[: max(1, characters - 1)].rstrip()}…"
 
 
 def count_noun(count: int, noun: str) -> str:

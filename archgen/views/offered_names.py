@@ -57,6 +57,11 @@ def list_offered_names(architecture: Architecture, library_types: Mapping[str, s
     components = tuple(OfferedName(each.id, _shorten_text(each.title)) for each in architecture.components.values())
     composed = tuple(OfferedName(each.id, _shorten_text(each.title)) for each in architecture.shells.values())
     outputs = tuple(_list_outputs(architecture))
+    composed_outputs = tuple(
+        OfferedName(port.id, port.type or "no type yet")
+        for shell in architecture.shells.values()
+        for port in shell.outputs.values()
+    )
     nodes = tuple(_list_titles({id_: node for id_, node in architecture.nodes.items() if node.written}))
     messages = sorted(architecture.interfaces.names)
     sections = {
@@ -76,7 +81,7 @@ def list_offered_names(architecture: Architecture, library_types: Mapping[str, s
         "types": tuple(
             OfferedName(each.name, each.message or "no message yet") for each in architecture.types.values()
         ),
-        "sources": _add_short_forms((*outputs, *components, *groups)),
+        "sources": _add_short_forms((*outputs, *composed_outputs, *components, *groups)),
         "implemented": _add_short_forms((*components, *composed)),
         "startable": _add_short_forms((*nodes, *components, *composed)),
         "step_ends": (

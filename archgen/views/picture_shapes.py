@@ -1,4 +1,4 @@
-"""The shapes of pictures without places, which emitters lay out: Graph, Chart, and SequenceChart."""
+"""The shapes of pictures: Graph, Chart and SequenceChart without places, which emitters lay out; Sheet with places."""
 
 from __future__ import annotations
 
@@ -87,13 +87,14 @@ class ChartBar:
     """A row of a chart: a title, a bar that begins at `start`, and its value as text at the right.
 
     `mark` is a tick on the bar's scale. `is_outside`: counted in the sum although it lies outside the selected part;
-    its text is grey.
+    its text is grey. `gaps` counts the bars with something unknown before it in time: each pushes it by one width.
     """
 
     title: str
     segments: tuple[BarSegment, ...]
     value: str = ""
     start: float = 0.0
+    gaps: int = 0
     mark: float | None = None
     strong: bool = False
     ref: str | None = None
@@ -184,6 +185,8 @@ class Box:
     change: ElementChange | None = None
     broken: bool = False
     """Whether a change breaks what it reads; a line says whose it is."""
+    members: tuple[tuple[int | None, int], ...] = ()
+    """What it stands for, a square each: palette index (None: grey) and how many."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -230,6 +233,8 @@ class Cluster:
     tooltip: str = ""
 
 
+UPRIGHT = "_upright"
+"""Behind the id of a picture: the same for paper and narrow screens."""
 GraphKind = Literal[
     "overview",
     "components",
@@ -258,7 +263,7 @@ class Graph:
     `kind` says what it shows, so that templates need not take the id apart.
 
     `layout` names the recipe: `flow` (one run of dot), `group` (one cluster with neighbours at both sides), `two-step`
-    (each cluster by itself, then the clusters as boxes), `overview` (boxes and merged arrows), `framed` (one run of dot
+    (each cluster by itself, then the clusters as boxes), `overview` (boxes in columns, one line for each pair), `framed` (one run of dot
     with frames around the boxes, for small graphs; labels are placed on the arrows afterwards). `asked` is the number
     of flows that the picture must account for: the arrows' counts add up to it.
     """
@@ -284,5 +289,84 @@ class Graph:
     kind: GraphKind = dataclasses.field(kw_only=True)
 
 
-Drawing = Graph | Chart | SequenceChart
+SheetColour = Literal[
+    "text",
+    "muted",
+    "paper",
+    "line",
+    "tint",
+    "blank",
+    "step1",
+    "step2",
+    "step3",
+    "step4",
+    "blue",
+    "amber",
+    "violet",
+    "green",
+    "red",
+    "unknown",
+]
+"""What a part of a sheet is drawn in; `step1` to `step4` are a scale, `unknown` is hatched."""
+
+
+@dataclass(frozen=True, slots=True)
+class SheetBar:
+    """A rectangle of a sheet by its left upper corner, with a text in its middle if it has one."""
+
+    x: float
+    y: float
+    width: float
+    height: float
+    fill: SheetColour = "blue"
+    rim: SheetColour | None = None
+    dashed: bool = False
+    rounded: bool = False
+    behind: bool = False
+    """Whether lines pass over it; it has neither label nor link then."""
+    label: str = ""
+    ref: str | None = None
+    tooltip: str = ""
+
+
+@dataclass(frozen=True, slots=True)
+class SheetText:
+    """A line of text of a sheet that begins at x, ends there (`right`) or has its middle there; y is its middle."""
+
+    x: float
+    y: float
+    text: str
+    size: float = 8.5
+    bold: bool = False
+    side: Literal["left", "right", "middle"] = "left"
+    ink: SheetColour = "text"
+    ref: str | None = None
+    tooltip: str = ""
+
+
+@dataclass(frozen=True, slots=True)
+class SheetLine:
+    """A line of a sheet through points, with an arrow head at its end if it is one."""
+
+    points: tuple[tuple[float, float], ...]
+    width: float = 1.0
+    ink: SheetColour = "line"
+    head: bool = True
+    tooltip: str = ""
+
+
+@dataclass(frozen=True, slots=True)
+class Sheet:
+    """A picture whose parts have their places, in points, y downwards; `id` and `title` are as in Graph."""
+
+    id: str
+    title: str
+    bars: tuple[SheetBar, ...]
+    texts: tuple[SheetText, ...]
+    lines: tuple[SheetLine, ...] = ()
+    notes: tuple[str, ...] = ()
+    alt: str = ""
+
+
+Drawing = Graph | Chart | SequenceChart | Sheet
 """What a Figure may show."""

@@ -66,6 +66,8 @@ class Text:
     """The run stands for the label of the figure or table that `ref` leads to: `Figure 3` in place of its text."""
     meter: Meter | None = None
     """A bar that repeats a figure of the same row; emitters may leave it out."""
+    pieces: tuple[WaterfallPiece, ...] = ()
+    """Stretches of time on an axis, which repeat figures of the same row; emitters may leave them out."""
 
 
 Inlines = tuple[Text, ...]
@@ -117,6 +119,8 @@ class Table:
     """The page turns to landscape for this table."""
     numbered: bool = True
     """The caption has a number, and the table is in the list of tables."""
+    dense: bool = False
+    """Set in small type: one of many, to be looked up."""
 
     @property
     def kind(self) -> str:
@@ -180,6 +184,10 @@ class Figure:
     alt: str
     numbered: bool = True
     """The picture has a caption with a number, and is in the list of figures."""
+    max_height: float = 0
+    """How high it is at most on paper, in mm, as long as it can be read; 0: as the page has room."""
+    narrow: str | None = None
+    """The id of the picture that narrow screens show in its place."""
 
     @property
     def kind(self) -> str:
@@ -270,6 +278,8 @@ class Outline:
     """The lists behind the contents."""
     has_large_paper: bool = True
     """Pictures may take sheets of twice the size."""
+    has_narrow_margins: bool = False
+    """Each section is to fit a page."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -10,6 +10,7 @@ from archgen.frozen import dataclass
 from archgen.model.node import Endpoint, Node
 from archgen.model.quantity import Quantity
 from archgen.model.start_up import ReadyConditions
+from archgen.views.timing_words import name_cores
 
 KIND_WORDS = {"program": "program", "node": "node", "container": "container", "composable": "loaded node"}
 _MAX_PORTS = 2
@@ -123,6 +124,7 @@ def describe_process(step: StartStep) -> list[str]:
     """Return how a step runs: folder, user, variables, whether it is started again."""
     phrases = [f"in {step.directory}"] if step.directory else []
     phrases += [f"as the user {step.user}"] if step.user else []
+    phrases += [f"on {name_cores(step.scheduling.cores)}"] if step.scheduling.cores else []
     phrases += [f"with {name}={value}" for name, value in step.environment.items()]
     phrases += [_describe_respawn(step.respawn_delay)] if step.respawn else []
     return phrases

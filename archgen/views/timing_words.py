@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 
 from archgen.model.declared_timing import InputTiming, Timing, list_fair_figures
 from archgen.model.deployment import Host
 from archgen.model.node import Node
+from archgen.model.process_scheduling import list_pinned_cores
 
 BEHAVIOUR_WORDS = {
     "periodic": "periodic",
@@ -41,10 +42,14 @@ def format_timing_sentence(timing: Timing | None) -> str:
         f"calls for each activation: {', '.join(_format_calls(timing))}" if timing.calls else "",
         f"priority {timing.priority}" if timing.priority is not None else "",
         f"deadline {timing.deadline}" if timing.deadline else "",
-        f"core {timing.core}" if timing.core is not None else "",
-        f"cores {', '.join(map(str, timing.cores))}" if timing.cores else "",
+        name_cores(list_pinned_cores(timing)),
     )
     return "; ".join(part for part in parts if part)
+
+
+def name_cores(cores: Sequence[int]) -> str:
+    """Return "core 2", "cores 0, 2", nothing where there are none."""
+    return f"core{'s' if len(cores) > 1 else ''} {', '.join(map(str, cores))}" if cores else ""
 
 
 def _write_ordinal(number: int) -> str:

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from archgen.bringup.program_names import ProgramNames, choose_own_name, group_endpoints, index_endpoints
+from archgen.bringup.program_names import ProgramNames, choose_own_names, group_endpoints, index_endpoints
 from archgen.bringup.start_plan import make_start_plan
 from archgen.model.architecture import Architecture
 from archgen.pipeline import check_project
@@ -48,11 +48,38 @@ def test_all_who_ask_get_one_answer(tmp_path: Path) -> None:
     assert "-r target:=/g/planner/left_goal" in " ".join(steps["l"].command)
 
 
-def test_a_program_of_one_node_says_the_names_itself(tmp_path: Path) -> None:
+def test_a_program_of_one_node_knows_its_ports_alone(tmp_path: Path) -> None:
     architecture = read(tmp_path)
     groups = group_endpoints([architecture.nodes["planner"]], index_endpoints(architecture))
-    names = {key: choose_own_name(key, each, is_shared=False) for (_, _, key), each in groups.items()}
-    assert names == {"left_goal": "/g/planner/left_goal", "right_goal": "/g/planner/right_goal"}
+    names = {key: own_name for (_, _, key), own_name in choose_own_names(architecture, groups).items()}
+    assert names == {"left_goal": "left_goal", "right_goal": "right_goal"}
+    remaps = ProgramNames(architecture, 2).find_remaps(architecture.nodes["planner"])
+    assert remaps == {"left_goal": "/g/planner/left_goal", "right_goal": "/g/planner/right_goal"}
+
+
+def test_ports_of_one_name_and_topics_of_all_nodes_are_told_apart(derived: Callable[[str], Architecture]) -> None:
+    architecture = derived("""
+groups:
+  g:
+    components:
+      cam: {outputs: {pose: std_msgs/Float64}}
+      filter: {inputs: {pose: cam.pose}, outputs: {pose: std_msgs/Float64, frames: tf2_msgs/TFMessage, odd: std_msgs/String}}
+nodes:
+  filter: {implements: g.filter, publishes: {frames: {topic: /tf}, odd: {topic: /odd, own_name: /here}}}
+""")
+    groups = group_endpoints([architecture.nodes["filter"]], index_endpoints(architecture))
+    names = {use + " " + key: own_name for (use, _, key), own_name in choose_own_names(architecture, groups).items()}
+    assert names == {
+        "subscribes pose": "subscribes/pose",
+        "publishes pose": "publishes/pose",
+        "publishes frames": "/tf",
+        "publishes odd": "/here",
+    }
+    assert ProgramNames(architecture, 2).find_remaps(architecture.nodes["filter"]) == {
+        "subscribes/pose": "/g/cam/pose",
+        "publishes/pose": "/g/filter/pose",
+        "/here": "/odd",
+    }
 
 
 def test_a_plan_starts_what_generators_make(derived: Callable[[str], Architecture]) -> None:
@@ -66,8 +93,8 @@ nodes:
 containers: {box: {}}
 """)
     commands = {step.id: " ".join(step.command) for step in make_start_plan(architecture).steps}
-    assert commands["left"] == "ros2 run robot_g arm --ros-args -r __node:=left"
-    assert commands["filter"] == "ros2 component load /box robot_g robot_g::Filter --node-name filter"
+    assert commands["left"] == "ros2 run robot_g arm --ros-args -r __node:=left -r state:=/g/left/state"
+    assert commands["filter"] == "ros2 component load /box robot_g_cpp robot_g_cpp::Filter --node-name filter"
 
 
 GUARD = """\

@@ -83,15 +83,32 @@ def test_steps_say_all_that_starts_them(derived: Derived) -> None:
             "components",
             "ros2 run rclcpp_components component_container_mt --ros-args -r __node:=box -p thread_num:=4",
         ),
-        "laser": ("node", "components", "ros2 run p s --ros-args -r __node:=laser"),
+        "laser": ("node", "components", "ros2 run p s --ros-args -r __node:=laser -r scan:=/g/laser/scan"),
         "localiser": (
             "node",
             "components",
-            "ros2 run p l --ros-args -r __node:=localiser -r __ns:=/n --params-file l.yaml",
+            (
+                "ros2 run p l --ros-args -r __node:=localiser -r __ns:=/n -r pose:=/g/localiser/pose -r scan:=/g/laser/scan"
+                " -r twist:=/g/control/twist --params-file l.yaml"
+            ),
         ),
-        "maps": ("node", "components", "ros2 run p m --ros-args -r __node:=maps"),
-        "planner": ("composable", "components", "ros2 component load /box p p::Planner --node-name planner"),
-        "control": ("node", "components", "ros2 run p c --ros-args -r __node:=control"),
+        "maps": ("node", "components", "ros2 run p m --ros-args -r __node:=maps -r get:=/g/maps/get"),
+        "planner": (
+            "composable",
+            "components",
+            (
+                "ros2 component load /box p p::Planner --node-name planner -r path:=/g/planner/path -r pose:=/g/localiser/pose"
+                " -r map:=/g/maps/get -e use_intra_process_comms:=true"
+            ),
+        ),
+        "control": (
+            "node",
+            "components",
+            (
+                "ros2 run p c --ros-args -r __node:=control -r twist:=/g/control/twist -r path:=/g/planner/path"
+                " -r pose:=/g/localiser/pose"
+            ),
+        ),
     }
     steps = {step.id: step for step in plan.steps}
     assert [words[-1] for words in steps["laser"].transitions] == ["configure", "activate"]
@@ -292,7 +309,7 @@ def test_of_many_components_with_loops_none_is_lost(derived: Derived) -> None:
             "jazzy",
             {
                 "a": "ros2 run p a --fast a b --ros-args -r __node:=a -r out:=/g/a/o -r /tf:=tf",
-                "b": "ros2 component load /box p p::B --node-name b -r in:=/g/a/o",
+                "b": "ros2 component load /box p p::B --node-name b -r in:=/g/a/o -e use_intra_process_comms:=true",
             },
         ),
         (

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import time
 
+import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
@@ -43,6 +44,7 @@ def test_of_waits_needed_alike_few_stay_out() -> None:
     assert len(dropped) == 2
 
 
+@pytest.mark.slow
 def test_three_thousand_steps_with_loops_take_little_time() -> None:
     steps = [f"s{at}" for at in range(3000)]
     reasons: tuple[WaitReason, ...] = ("data", "sampled", "optional", "service")

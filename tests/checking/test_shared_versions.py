@@ -11,7 +11,9 @@ from pathlib import Path
 import pytest
 
 from archgen import pipeline
+from archgen.compare.compare_versions import compare_versions
 from archgen.pipeline import CheckedProject, VersionCache
+from archgen.products.compared_versions import make_comparison_input
 from tests.link.test_variant_exactness import write_robot
 from tests.property_sizes import list_seeds
 
@@ -77,12 +79,46 @@ def test_versions_that_share_a_cache_are_judged_as_if_alone(tmp_path: Path, seed
         change_something(folder, chance)
 
 
+def describe_comparison(before: CheckedProject, after: CheckedProject) -> str:
+    """Return the elements of both versions in normal form, and all that differs."""
+    found = compare_versions(make_comparison_input(before), make_comparison_input(after))
+    return repr((found.versions.elements, found.changes, found.boundaries, found.limits, found.loads))
+
+
+@pytest.mark.parametrize("seed", list_seeds(4))
+def test_versions_that_share_a_cache_are_compared_as_if_alone(tmp_path: Path, seed: int) -> None:
+    chance, folder, cache = random.Random(seed), tmp_path / "project", VersionCache()  # noqa: S311 - the same each time
+    split_robot(write_robot(seed), folder)
+    shared, alone = pipeline.check_project(folder, cache), pipeline.check_project(folder)
+    for _ in range(4):
+        change_something(folder, chance)
+        shared_before, shared = shared, pipeline.check_project(folder, cache)
+        alone_before, alone = alone, pipeline.check_project(folder)
+        assert describe_comparison(shared_before, shared) == describe_comparison(alone_before, alone)
+
+
+@pytest.mark.slow
 def test_versions_of_the_example_that_share_a_cache_are_judged_as_if_alone(tmp_path: Path) -> None:
     chance, folder, cache = random.Random(30), tmp_path / "project", VersionCache()  # noqa: S311 - the same each time
     shutil.copytree(_EXAMPLE, folder)
     for _ in range(4):
         assert describe(pipeline.check_project(folder, cache)) == describe(pipeline.check_project(folder))
         change_something(folder, chance)
+
+
+def test_what_two_versions_share_is_listed_once_for_a_comparison(tmp_path: Path) -> None:
+    _BENCHMARK.generate(60, tmp_path)
+    cache = VersionCache()
+    before = pipeline.check_project(tmp_path, cache)
+    file = tmp_path / "groups" / "g5.yaml"
+    file.write_text(file.read_text(encoding="utf-8").replace("title: Group 5", "title: Other"), encoding="utf-8")
+    after = pipeline.check_project(tmp_path, cache)
+    found = compare_versions(make_comparison_input(before), make_comparison_input(after))
+    old, new = found.versions.elements
+    anew = {name for (kind, name), each in old.items() if kind == "component" and each is not new[kind, name]}
+    assert anew == {f"g5.c{n}" for n in range(10)}
+    assert [change.key for change in found.changes] == ["title"]
+    assert not found.boundaries
 
 
 def test_what_two_versions_share_is_linked_once(tmp_path: Path) -> None:

@@ -179,7 +179,7 @@ def test_a_backend_cannot_be_called_as_an_output(run: Run, robot: Path, tmp_path
     assert not (tmp_path / "out").exists()
 
 
-@pytest.mark.parametrize("verb", [("generate", "code"), ("export", "table")])
+@pytest.mark.parametrize("verb", [("generate", "code"), pytest.param(("export", "table"), marks=pytest.mark.slow)])
 def test_backends_of_a_branch_run_only_if_the_main_line_names_them(robot: Path, verb: tuple[str, str]) -> None:
     repositories.repository(robot, {"archgen.yaml": PROJECT})
     done = archgen(*verb, "--trust", "main", "-o", "out", cwd=robot, status=2)

@@ -105,3 +105,9 @@ def test_progress_is_shown_on_terminals_only(monkeypatch: pytest.MonkeyPatch) ->
         show(done, 3)
     assert screen.getvalue().startswith("\r\x1b[Kdrawing: 1 of 3")
     assert screen.getvalue().endswith("\r\x1b[Kdrawing: 3 of 3\r\x1b[K")
+
+
+def test_long_work_says_how_long_it_goes_on() -> None:
+    assert [command_support.describe_time_left(*each) for each in ((2.9, 1, 9), (9, 0, 9), (9, 9, 9))] == [""] * 3
+    assert command_support.describe_time_left(10, 4, 10) == ", some 15 s left"
+    assert command_support.describe_time_left(60, 10, 100) == ", some 9 min left"

@@ -106,3 +106,22 @@ def test_a_project_with_errors_is_no_conforming_one(run: Run, graph: str) -> Non
     done = run("conform", "rover", "--against", "graph.txt")
     assert done.status == 1
     assert "scna" in done.err
+
+
+def test_what_the_robot_tells_is_written_or_shown_as_a_patch(run: Run, graph: str) -> None:
+    """A difference is followed only where its rule is named."""
+    Path("graph.txt").write_text(graph.replace("rate: 12.5", "rate: 10.0"), encoding="utf-8")
+    against = ("conform", "rover", "--against", "graph.txt", "--adopt")
+    assert run(*against).err.startswith("adopted: 0\n")
+    patch = run(*against, "--only", "other-parameter", "--dry-run")
+    assert (patch.status, patch.err) == (0, "adopted: 1\n")
+    assert patch.out.startswith("--- a/archgen.yaml\n+++ b/archgen.yaml\n")
+    assert "\n+    parameters: {rate: 10.0}\n" in patch.out
+    done = run(*against, "--only", "other-parameter")
+    assert done.status == 0
+    assert done.out.startswith("wrote rover/archgen.yaml (as on the robot)\n")
+    assert done.out.endswith("no differences\n")
+    assert Path("rover/archgen.yaml").read_text(encoding="utf-8") == ROVER.replace("rate: 12.5", "rate: 10.0")
+    for wrong, words in {("--format", "json"): "no --format", ("--variant", "x"): "no --variant"}.items():
+        assert words in run(*against, *wrong).err
+    assert "give both" in run("conform", "rover", "--against", "graph.txt", "--dry-run").err

@@ -34,6 +34,7 @@ def robot(tmp_path: Path) -> Iterator[Path]:
     subprocess.run(["rm", "-rf", tmp_path / "r"], check=True)  # noqa: S603, S607 - a folder of this test
 
 
+@pytest.mark.slow
 def test_a_deep_file_is_read_from_disk_and_from_a_commit(
     run: Run, robot: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -44,6 +45,7 @@ def test_a_deep_file_is_read_from_disk_and_from_a_commit(
     assert run("diff", "HEAD", "-C", robot).out == "no changes\n"
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("place", ["templates", "assets"])
 def test_deep_folders_of_a_backend_are_its_own_mistake(
     run: Run, robot: Path, monkeypatch: pytest.MonkeyPatch, place: str

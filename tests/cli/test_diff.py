@@ -133,6 +133,7 @@ def test_json_follows_its_schema(run: Run, robot: Path) -> None:
     assert {"unmapped-component", "unread-output"} <= {d["rule"] for d in data["findings"]["new"]}
 
 
+@pytest.mark.slow
 def test_json_of_the_case_study(run: Run, tmp_path: Path) -> None:
     files = {name: data for name, data in contents(RAMCIP).items() if "archgen-out" not in name}
     root = repository(tmp_path / "ramcip", dict(files))

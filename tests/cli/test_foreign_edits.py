@@ -12,6 +12,7 @@ import pytest
 
 from tests import repositories
 from tests.cli.conftest import Ran, Run
+from tests.property_sizes import list_seeds
 
 PROJECT = {
     "archgen.yaml": """\
@@ -382,7 +383,7 @@ def test_types_in_somebodys_folder_are_his(run: Run, tmp_path: Path, monkeypatch
         repositories.git(top, "reset", "-q", "--hard", "main")
 
 
-@pytest.mark.parametrize("seed", range(20))
+@pytest.mark.parametrize("seed", list_seeds(20))
 def test_a_partner_refactors_its_own_without_asking(
     run: Run, robot: Path, monkeypatch: pytest.MonkeyPatch, seed: int
 ) -> None:

@@ -254,3 +254,54 @@ def test_passes_run_before(run: Run, robot: Path, tmp_path: Path) -> None:
     assert (
         "the backend `code` cannot be used: no pass named `remove_generic`: did you mean `remove_generics`?" in ran.err
     )
+
+
+LISTED = "generate:\n  into: ws\n  backends: {code: {word: listed}, ros_interfaces: }\n"
+
+
+def test_all_that_is_listed_is_made(run: Run, robot: Path) -> None:
+    (robot / "archgen.yaml").write_text(PROJECT + LISTED)
+    ran = run("generate", "--check", "-C", robot)
+    assert (ran.status, ran.out.splitlines()[0]) == (1, "stale: code/Pose.txt (it is not there)")
+    assert not (robot / "ws").exists()
+    ran = run("generate", "-C", robot)
+    assert (ran.status, ran.err) == (0, "")
+    files = made(robot / "ws")
+    assert files["code/Scan.txt"] == "listed Scan float64\n"
+    assert "src/a_msgs/msg/Scan.msg" in files
+    ran = run("generate", "--check", "-C", robot)
+    assert (ran.status, ran.out, ran.err) == (0, "", "")
+    # What the project lists counts for a backend alone, too; what somebody says now counts more.
+    assert run("generate", "code", "--check", "-C", robot).status == 0
+    assert run("generate", "code", "--check", "-C", robot, "--option", "word=other").status == 1
+    (robot / "archgen.yaml").write_text(PROJECT.replace("x: float64", "x: float32") + LISTED)
+    ran = run("generate", "--check", "-C", robot)
+    assert ran.out.splitlines() == [
+        "stale: code/Scan.txt (it is not as the model says)",
+        "stale: src/a_msgs/msg/Scan.msg (it is not as the model says)",
+    ]
+    assert made(robot / "ws") == files
+
+
+@pytest.mark.parametrize(
+    ("listed", "words", "message"),
+    [
+        ("", (), "name what to make: "),
+        ("generate: {backends: {}}", (), "or list what to make in `generate` of the project"),
+        ("generate: {into: ../../x, backends: {code: }}", (), "leads out of the project's repository"),
+        ("generate: {into: /tmp/x, backends: {code: }}", ("code",), "leads out of the project's repository"),
+        (LISTED, ("--option", "word=a"), "want the backend that they are for"),
+        (LISTED, ("--keep", "x"), "want the backend that they are for"),
+        ("generate: {backends: {cde: }}", (), "there is no text backend `cde`"),
+        ("generate: {backends: {code: {wrd: a}}}", (), "the backend `code` has no option `wrd`"),
+        ("generate: [code]", (), "generate"),
+    ],
+)
+def test_what_cannot_be_made_is_refused(
+    run: Run, robot: Path, listed: str, words: tuple[str, ...], message: str
+) -> None:
+    (robot / "archgen.yaml").write_text(PROJECT + listed)
+    ran = run("generate", *words, "-C", robot)
+    assert ran.status in {1, 2}
+    assert message in ran.err
+    assert not (robot / "archgen-out").exists()

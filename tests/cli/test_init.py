@@ -416,3 +416,29 @@ def test_what_init_writes_is_the_gate_of_the_workflow(
     # A file more: CODEOWNERS does not name it.
     repositories.commit(tmp_path, {"groups/more.yaml": "hosts: {pc: PC}\n"})
     assert "stale-codeowners" in run("check", tmp_path).out
+
+
+def test_an_empty_project_has_the_groups_that_are_named_and_takes_components(run: Run, tmp_path: Path) -> None:
+    folder = tmp_path / "robot"
+    words = ("--empty", "--partner", "kth=KTH", "--group", "perception=kth")
+    assert run("init", folder, *words).status == 0
+    assert findings(folder) == []
+    architecture = check_project(folder).architecture
+    assert (list(architecture.groups), list(architecture.components), architecture.requirements) == (
+        ["perception"],
+        [],
+        {},
+    )
+    assert run("new", "component", "perception.camera", "-C", folder).status == 0
+    assert list(check_project(folder).architecture.components) == ["perception.camera"]
+    assert run("init", tmp_path / "other", "--empty").status == 0
+    assert run("new", "group", "navigation", "-C", tmp_path / "other").status == 0
+    assert list(check_project(tmp_path / "other").architecture.groups) == ["navigation"]
+
+
+@pytest.mark.parametrize("forge", ["github", "gitlab"])
+def test_a_workflow_that_finds_no_archgen_yet_is_said(forge: str, run: Run, tmp_path: Path) -> None:
+    ran = run("init", tmp_path / "robot", "--ci", forge)
+    assert "where it is not published yet" in ran.out
+    assert "Until archgen is published" in (tmp_path / "robot/README.md").read_text()
+    assert "not published" not in run("init", tmp_path / "other", "--ci", "none").out

@@ -2,8 +2,12 @@
 
 from __future__ import annotations
 
+import os
 import sys
+import threading
 from pathlib import Path
+
+import pytest
 
 from tests import repositories
 from tests.cli.conftest import Ran, Run
@@ -51,6 +55,18 @@ def test_what_is_no_text_is_left_to_people(run: Run, tmp_path: Path) -> None:
     assert "cannot merge" in ran.err
     assert "\x1b" not in ran.err
     assert files[1].read_bytes() == b"\x00\x01"
+
+
+@pytest.mark.skipif(not hasattr(os, "mkfifo"), reason="no named pipes")
+def test_what_never_ends_is_not_waited_for(run: Run, tmp_path: Path) -> None:
+    files = write_versions(tmp_path, BASE, BASE, BASE)
+    files[0].unlink()
+    os.mkfifo(files[0])
+    what_ends_it = threading.Timer(5, lambda: os.close(os.open(files[0], os.O_WRONLY | os.O_NONBLOCK)))
+    what_ends_it.start()
+    ran = run("merge-driver", *files, "a.yaml")
+    what_ends_it.cancel()
+    assert (ran.status, "a.yaml" in ran.err, "this is a named pipe, not a file" in ran.err) == (2, True, True)
 
 
 def test_git_merges_with_it(tmp_path: Path) -> None:

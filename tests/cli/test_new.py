@@ -50,6 +50,7 @@ def test_a_component_goes_where_its_group_is_told(run: Run, ramcip: Path) -> Non
     assert check_project(ramcip).architecture.components["human_state.gaze"].owner == "tum"
 
 
+@pytest.mark.slow
 def test_a_group_gets_a_file_beside_the_others(run: Run, ramcip: Path) -> None:
     before = contents(ramcip)
     assert run("new", "group", "garden", "--title", "Garden: outside", "--owner", "ace", "-C", ramcip).status == 0
@@ -192,6 +193,7 @@ def test_sources_that_do_not_name_the_new_file(run: Run, ramcip: Path) -> None:
     assert not (ramcip / "groups/garden.yaml").exists()
 
 
+@pytest.mark.slow
 def test_a_partner_gets_a_file_for_its_agreements_that_is_read_whatever_sources_names(run: Run, ramcip: Path) -> None:
     before = contents(ramcip)
     ran = run("new", "partner", "inria", "--title", "Inria: Nancy", "--reviewers", "@inria/nancy", "-C", ramcip)

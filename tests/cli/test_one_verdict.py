@@ -17,6 +17,7 @@ import pytest
 from lxml import etree
 
 from tests.cli.conftest import Run
+from tests.property_sizes import mark_further_samples
 from tests.timing.random_robots import random_robot_text
 
 _UNITS = {"ns": Fraction(1), "us": Fraction(10**3), "µs": Fraction(10**3), "ms": Fraction(10**6), "s": Fraction(10**9)}
@@ -162,11 +163,12 @@ def read_quick(run: Run, folder: Path, seed: int, *, agrees: bool = True) -> dic
     return chains
 
 
-@pytest.mark.parametrize("seed", [17, 24, 51])
+@pytest.mark.parametrize("seed", mark_further_samples([24, 17, 51]))
 def test_what_is_read_and_written_quickly_says_the_same(run: Run, tmp_path: Path, seed: int) -> None:
     assert read_quick(run, tmp_path, seed)
 
 
+@pytest.mark.slow
 def test_all_outputs_say_the_same(run: Run, tmp_path: Path) -> None:
     chains = read_quick(run, tmp_path, 34)
     robot = tmp_path / "after" / "robot.yaml"
@@ -190,6 +192,10 @@ def test_all_outputs_say_the_same(run: Run, tmp_path: Path) -> None:
         )
         assert f"{chain['verdict']}" in text
         assert "diverged" not in text
+        assert f"{chain['verdict']}" in run("show", name, "-C", robot).out.lower()
+    for partner in ("p", "q"):
+        reliance = json.loads(run("impact", "--partner", partner, robot, "--format", "json").out)
+        assert all(each["verdict"] == chains[each["id"]]["verdict"] for each in reliance["chains"])
 
 
 @pytest.mark.slow

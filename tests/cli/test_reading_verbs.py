@@ -155,11 +155,28 @@ def test_a_name_that_nothing_has_is_told_in_the_same_words(
     assert ran.err.splitlines()[-1] == f"Error: nothing is called `{word}`; {help_text}"
 
 
+@pytest.mark.parametrize(
+    ("word", "meant"),
+    [
+        ("nodes", "archgen list --of nodes"),
+        ("backend", "archgen list --of backends"),
+        ("safety", "tag:safety"),
+        ("acme_drivers", "package:acme_drivers"),
+    ],
+)
+def test_what_is_no_name_of_an_element_is_taken_for_what_it_is(run: Run, first: Path, word: str, meant: str) -> None:
+    (first / "more.yaml").write_text("nodes: {extra: {package: acme_drivers, executable: e, status: planned}}\n")
+    ran = run("list", word, "-C", first)
+    assert ran.err.splitlines()[-1] == f"Error: nothing is called `{word}`; did you mean `{meant}`?"
+
+
 def test_the_project_is_named_by_position_or_as_an_option_but_once(run: Run, first: Path) -> None:
     assert run("stats", first) == run("stats", "-C", first) == run("stats", "--project", first)
     ran = run("stats", first, "-C", first)
     assert (ran.status, ran.out) == (2, "")
     assert f"the project is named twice: {first} and -C {first}" in ran.err
+    ran = run("stats", "9" * 5000, "-C", first)  # no system has such a file
+    assert (ran.status, "is no folder: what stands here is the project" in ran.err) == (2, True)
 
 
 def test_history_without_a_repository_says_where_it_is_read_from(run: Run, first: Path) -> None:
@@ -263,3 +280,14 @@ def test_a_terminal_of_80_columns_shows_progress_as_a_table(
     assert heading.split() == ["Components", "total", "described", "typed", "mapped", "timed", "traced"]
     assert not any("described:" in line for line in lines)
     assert max(map(len, lines)) <= 80
+
+
+def test_show_gives_data_too(run: Run, first: Path) -> None:
+    (card,) = json.loads(run("show", "obstacle_stop", "--format", "json", "-C", first).out)
+    assert (card["kind"], card["id"], card["place"]) == (
+        "component",
+        "navigation.obstacle_stop",
+        {"file": "archgen.yaml", "line": 105, "column": 7},
+    )
+    assert set(card) == {"kind", "id", "title", "place", "facts", "lists"}
+    assert all(isinstance(items, list) for items in card["lists"].values())

@@ -154,7 +154,7 @@ def _demand_width(run: Run, monkeypatch: pytest.MonkeyPatch, broken: Path, verb:
     assert max(map(len, lines)) <= int(columns)
 
 
-@pytest.mark.parametrize("verb", ["explain", "check $project"])
+@pytest.mark.parametrize("verb", mark_further_samples(["check $project", "explain"]))
 def test_a_pipe_gets_every_row_on_one_line(broken: Path, verb: str) -> None:
     _demand_whole_rows(*(_shell(f"$archgen {verb}", broken, COLUMNS=width).stdout for width in ("50", "", "1000")))
 

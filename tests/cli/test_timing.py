@@ -105,6 +105,7 @@ def robot(tmp_path: Path) -> Path:
     return Path(shutil.copy(ROBOT, tmp_path / "robot.yaml"))
 
 
+@pytest.mark.slow
 def test_a_robot_that_is_late_is_proven_in_three_commands(run: Run, robot: Path) -> None:
     shown = run("timing", robot).out
     assert (
@@ -123,6 +124,7 @@ def test_a_robot_that_is_late_is_proven_in_three_commands(run: Run, robot: Path)
     assert again.out == "Each chain with a deadline is met, or lacks figures: there is nothing to do.\n"
 
 
+@pytest.mark.slow
 def test_a_proposal_in_json(run: Run, robot: Path) -> None:
     found = _json(run, robot, "--propose")["propose"]
     best = found["tried"][found["best"]]
@@ -136,6 +138,7 @@ def test_a_proposal_in_json(run: Run, robot: Path) -> None:
     assert not any("trigger" in change for tried in kept["tried"] for change in tried["set"])
 
 
+@pytest.mark.slow
 def test_what_has_no_place_is_to_be_written_by_hand(run: Run, robot: Path) -> None:
     text = robot.read_text(encoding="utf-8").replace(
         "    container: navbox\n    timing: {rate: 5", "    container: &box navbox\n    timing: {rate: 5"

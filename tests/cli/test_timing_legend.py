@@ -9,8 +9,8 @@ import pytest
 
 from archgen import resources
 from tests.cli.conftest import Run
-from tests.emit.terminal.test_chain_gaps import HEAVY, ROBOT
 from tests.property_sizes import mark_further_samples
+from tests.timing.chains.test_missing_figures import HEAVY, ROBOT
 
 _HOT = HEAVY.replace("8 ms", "12 ms")
 _DARK = "groups: {g: {components: {a: {}}}}\nnodes: {a: {implements: a}}\n"
@@ -129,7 +129,7 @@ def test_what_nobody_wrote_of_jitter_is_said_once(run: Run, tmp_path: Path) -> N
         ("--chain", "obstacle_to_stop"),
         ("--why", "fall_to_call"),
         ("--why", "object_store"),
-        ("--sensitivity", "missed_dose_to_mark"),
+        pytest.param(("--sensitivity", "missed_dose_to_mark"), marks=pytest.mark.slow),
         ("--from", "scanner_rear", "--to", "base_driver", "--worst", "3"),
         ("--set", "scanner_rear.timing.wcet=3ms"),
     ],

@@ -102,7 +102,7 @@ def test_watching_checks_again_when_a_file_is_saved(run: Run, robot: Path, monke
         (robot / "archgen.yaml").write_text(ROBOT.replace("g.stereo_camera.image", "g.stereo.image"), encoding="utf-8")
         on_change()
 
-    monkeypatch.setattr("archgen.serve.file_watch.watch_files", save_once)
+    monkeypatch.setattr("archgen.live.file_watch.watch_files", save_once)
     ran = run("check", robot, "--watch", "-q")
     first, second = click.unstyle(ran.out).split("--- a file was saved\n")
     assert (first, "no output named `g.stereo.image`" in second, len(seen)) == ("", True, 1)

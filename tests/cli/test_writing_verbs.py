@@ -55,6 +55,16 @@ def test_keep_going(run: Run, broken: Path) -> None:
         (("diagram", "--format", "gif"), "--format takes svg, png, pdf, dot, separated by commas, not 'gif'"),
         (("diagram", "--depth", "-1"), "-1 is not in the range x>=0"),
         (("report", "--level", "high"), "'high' is not one of 'functional', 'implementation'"),
+        (("report", "--document", "all"), "'all' is not one of 'deliverable', 'data-sheets', 'workbook', 'full'"),
+        (
+            ("report", "--document", "workbook", "--format", "docx"),
+            "`--document workbook` goes with `--format xlsx` alone",
+        ),
+        (
+            ("report", "--document", "data-sheets", "-o", "a.xlsx"),
+            "`--document workbook` goes with `--format xlsx` alone",
+        ),
+        (("report", "--since", "v0"), "v0"),
     ],
 )
 def test_wrong_usage(run: Run, first: Path, words: tuple[str, ...], said: str) -> None:
@@ -83,7 +93,9 @@ def test_files_of_others_stay(run: Run, first: Path, tmp_path: Path) -> None:
 def test_a_picture_that_there_is_not(run: Run, first: Path, tmp_path: Path) -> None:
     ran = run("diagram", first, "--only", "nothing/*")
     assert ran.status == 2
-    assert ran.err.startswith("Error: no picture is called nothing/*; there are overview, components, groups/")
+    assert ran.err.startswith(
+        "Error: no picture is called nothing/*; there are overview, overview_upright, components, groups/"
+    )
     assert ran.err.endswith(", ...\n")
     (tmp_path / "archgen.yaml").write_text("archgen: 1\n")
     ran = run("diagram", tmp_path, "--only", "overview")

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import itertools
 from collections.abc import Callable, Mapping
+from functools import lru_cache
 from pathlib import Path
 
 import pytest
@@ -11,11 +13,13 @@ from archgen import pipeline
 from archgen.compare import Change, Comparison
 from archgen.compare.compare_versions import compare_versions
 from archgen.model.architecture import Architecture
+from archgen.pipeline import CheckedProject
 from archgen.products.compared_versions import make_comparison_input
 
 Compared = Callable[[str, str], Comparison]
 ComparedFolders = Callable[[Mapping[str, str], Mapping[str, str]], Comparison]
 Checked = Callable[[str], Architecture]
+JudgeText = Callable[..., CheckedProject]
 Told = Callable[[str, str], list[str]]
 
 
@@ -30,18 +34,32 @@ def checked(tmp_path: Path) -> Checked:
     return run
 
 
+@pytest.fixture(scope="session")
+def judge_text(tmp_path_factory: pytest.TempPathFactory) -> JudgeText:
+    """Check a one-file project, the same text once for many tests: most edit one that their file holds.
+
+    A copy has nothing in common with the other one but the text.
+    """
+    folder = tmp_path_factory.mktemp("judged")
+    numbers = itertools.count()
+
+    @lru_cache(maxsize=128)
+    def judge(text: str, *, is_copy: bool = False) -> CheckedProject:  # noqa: ARG001 - it is in the key
+        file = folder / str(next(numbers)) / "robot.yaml"
+        file.parent.mkdir()
+        file.write_text(text, encoding="utf-8")
+        return pipeline.check_project(file)
+
+    return judge
+
+
 @pytest.fixture
-def compared(tmp_path: Path) -> Compared:
+def compared(judge_text: JudgeText) -> Compared:
     """Compare two one-file projects."""
 
     def run(before: str, after: str) -> Comparison:
-        sides = []
-        for name, text in (("before", before), ("after", after)):
-            folder = tmp_path / name
-            folder.mkdir(exist_ok=True)
-            (folder / "robot.yaml").write_text(text, encoding="utf-8")
-            sides.append(make_comparison_input(pipeline.check_project(folder / "robot.yaml")))
-        return compare_versions(*sides)
+        sides = (judge_text(before), judge_text(after, is_copy=before == after))
+        return compare_versions(*map(make_comparison_input, sides))
 
     return run
 

@@ -25,6 +25,7 @@ WORLD = by_key(
     element("host arm"),
     element("link lan", connects=frozenset({"pc"})),
     element("link wan"),
+    element("link own", owner="L"),
     element("container box", host="pc"),
     element("container bin", host="arm"),
     element("node n", owner="N", host="pc"),
@@ -55,7 +56,7 @@ READS = "b.d.i <- a.c.x"
         ("chain c title", ""),
         ("host pc title", ""),
         ("policy p", ""),
-        ("project robot distro", "A B C D G K M N O"),
+        ("project robot distro", "A B C D G K L M N O"),
         ("project robot title", ""),
         ("connection b.d.i", "A B"),
         ("output a.c.x", "A B"),
@@ -117,6 +118,8 @@ def test_a_link_concerns_those_whose_data_crosses_it_where_timing_knows() -> Non
     assert find_concerned_owners([Change("changed", "link", "lan", key="bandwidth")], users) == ("A",)
     assert find_concerned_owners([Change("changed", "link", "lan", key="title")], users) == ()
     assert find_concerned_owners([Change("added", "link", "wan")], users) == ()
+    # Who answers for it is concerned whatever crosses it.
+    assert find_concerned_owners([Change("changed", "link", "own", key="title")], users) == ("L",)
 
 
 def test_the_owner_of_a_group_is_concerned_by_what_comes_into_it_and_leaves_it() -> None:

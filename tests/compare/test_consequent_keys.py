@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from archgen.compare.changed_keys import is_consequence
+from archgen.compare.changed_keys import ElementPair, is_consequence
 from archgen.compare.normal_values import ElementTitle
 from archgen.compare.version_pair import ComparedElement
 from tests.compare.elements import by_key, element, with_values
@@ -17,7 +17,7 @@ def follows(
     before: tuple[ComparedElement, ...] = (),
     after: tuple[ComparedElement, ...] = (),
 ) -> bool:
-    return is_consequence(key, old, new, by_key(*before), by_key(*after))
+    return is_consequence(key, ElementPair(old, new, by_key(*before), by_key(*after)))
 
 
 def title(text: str, *, generated: bool = False) -> ElementTitle:

@@ -68,6 +68,7 @@ TABLE_ONLY_FOR_SCHEMA = {
     "project shared_topics": "below `ros`",
     "project parameters": "below `ros`",
     "project environment": "below `ros`",
+    "project discovery": "below `ros`",
     "project layout": "a section of its own",
     "project chapters": "below `report`",
     "project review": "a section of its own",
@@ -185,8 +186,8 @@ SEARCH_WORDS = {"output": "port", "input": "port"}
 """Kinds that the search calls otherwise."""
 _ROBOT = """\
 archgen: 1
-project: {id: robot, title: Robot, version: "1", description: D, middleware: orocos}
-ros: {distro: jazzy, parameters: {use_sim_time: true}, environment: {A: "1"}}
+project: {id: robot, title: Robot, version: "1", description: D, license: MIT, middleware: orocos}
+ros: {distro: jazzy, parameters: {use_sim_time: true}, environment: {A: "1"}, discovery: peers}
 partners: {certh: {title: C, description: D, contact: c@d.eu, reviewers: "@c", properties: {q: 1}, hints: {x: {a: 1}}}, sssa: S}
 use_cases: {UC-1: {title: U, description: D, actors: {p: P}, steps: [{from: p, to: a, say: S}, {from: a, to: p}], properties: {q: 1}, hints: {x: {a: 1}}}}
 requirements: {R-0: W, R-1: {title: R, description: D, parent: R-0, kind: k, priority: p, rationale: W, source: S, verified_by: [UC-1, c, t.py, by hand], use_cases: [UC-1], tags: [t], urls: {a: "https://a.eu"}, properties: {q: 1}, hints: {x: {a: 1}}}}
@@ -281,10 +282,10 @@ nodes:
   r: [whole, copy]
   s: {timing: {rate: 1 Hz}}
   t: [d, e]
-hosts: {pc: {title: P, cores: 4, environment: {A: "1"}, scheduling: edf, description: D, tags: [t], properties: {q: 1}, hints: {x: {a: 1}}}, arm: {scheduling: {0: fifo}}}
+hosts: {pc: {title: P, cores: 4, address: 10.0.0.2, environment: {A: "1"}, scheduling: edf, description: D, tags: [t], properties: {q: 1}, hints: {x: {a: 1}}}, arm: {scheduling: {0: fifo}}}
 containers: {bare: pc, box: {title: B, host: pc, threads: 2, scheduling: fifo, namespace: /s, name: boxes, package: p, executable: e, parameters: {rate: 5}, properties: {q: 1}, hints: {x: {a: 1}}}}
 resources: {gpu: {title: G, host: pc, scheduling: fifo, properties: {q: 1}, hints: {x: {a: 1}}}}
-links: {lan: {title: L, connects: [pc, arm, b], protocol: can, bandwidth: 1 Gbit/s, latency: {best: 1 ms, worst: 2 ms}, properties: {q: 1}, hints: {x: {a: 1}}}}
+links: {lan: {title: L, connects: [pc, arm, b], owner: certh, protocol: can, bandwidth: 1 Gbit/s, latency: {best: 1 ms, worst: 2 ms}, properties: {q: 1}, hints: {x: {a: 1}}}}
 frames: {map: }
 chains: {c: {title: C, through: [a, n], deadline: 1 s, requirements: [R-1], properties: {q: 1}, hints: {x: {a: 1}}}}
 views: {v: {title: V, show: g, colour: owner, level: implementation, depth: 1, layout: {direction: top-bottom}, properties: {q: 1}, hints: {x: {a: 1}}}}
@@ -522,7 +523,7 @@ def test_no_key_is_listed_twice() -> None:
                 "partner contact, partner reviewers, requirement use_cases, policy forbid.from, component timing.wcet.p50, "
                 "requirement parent, requirement kind, requirement priority, requirement verified_by, "
                 "type generic, type fields.x, component timing.wcet.measured, node timing.wcet.p99, frame parent, frame by, frame rate, frame static, "
-                "link protocol, project middleware, "
+                "link protocol, link owner, milestone date, milestone needs, project middleware, "
                 "output frame, input frame, type frame, component status, component properties.trl, node hints.a.b, host properties.x, "
                 "project properties.trl, output promise.rate, output version, output deprecated.until, type version, "
                 "type deprecated.use, component_type version, component_type deprecated.until"

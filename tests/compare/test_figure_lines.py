@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import itertools
 import json
-from pathlib import Path
 
 import jsonschema_rs
 import pytest
@@ -17,8 +16,9 @@ from archgen.views.changes.boundary_lines import write_boundary_lines
 from archgen.views.changes.comparison_document import ReadingErrors, describe_comparison
 from archgen.views.changes.figure_lines import write_load_lines
 from archgen.views.changes.named_elements import name_partners
-from tests.agreeing import checked, view
-from tests.compare.conftest import Compared
+from archgen.views.lookup import Lookup
+from tests.agreeing import view
+from tests.compare.conftest import Compared, JudgeText
 from tests.compare.test_whom_a_change_concerns import CASES, HARVESTER
 
 PERSONS = "`sensing.detector.persons` from Vega to Kite and Orsa"
@@ -142,9 +142,17 @@ def _edit(name: str) -> str:
     return text
 
 
+@pytest.fixture(scope="module")
+def harvester(judge_text: JudgeText) -> Lookup:
+    """Look things up in the robot without an edit."""
+    return view(judge_text(HARVESTER))
+
+
 @pytest.mark.parametrize("name", CASES)
-def test_what_an_agreement_shows_as_another_figure_is_told(tmp_path: Path, compared: Compared, name: str) -> None:
-    lookups = [view(checked(tmp_path / side, text)) for side, text in (("a", HARVESTER), ("b", _edit(name)))]
+def test_what_an_agreement_shows_as_another_figure_is_told(
+    judge_text: JudgeText, harvester: Lookup, compared: Compared, name: str
+) -> None:
+    lookups = [harvester, view(judge_text(_edit(name)))]
     comparison = compared(HARVESTER, _edit(name))
     told = {(change.interface_id, pair) for change in comparison.boundaries for pair in _pairs(change)}
     for pair in itertools.combinations(("kite", "orsa", "palma", "vega"), 2):

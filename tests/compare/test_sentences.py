@@ -8,13 +8,13 @@ from dataclasses import replace
 import pytest
 
 from archgen.compare import Change
-from archgen.compare.change_sentences import describe_change, describe_port_change, describe_rename
+from archgen.compare.change_sentences import describe_change, describe_connection, describe_port_change, describe_rename
 from archgen.compare.connection_maps import RewiredInput, find_rewired_inputs
-from archgen.compare.connection_sentences import describe_connection
 from archgen.compare.element_sentences import describe_element_change
 from archgen.compare.key_phrases import limit_effects, shown_id, tick_names
 from archgen.compare.normal_values import ElementTitle
 from archgen.compare.version_pair import VersionPair
+from tests.compare.conftest import Told
 from tests.compare.elements import by_key, element, pair, some, with_values
 
 ALL = ("input g.i", "input g.j", "output g.x", "output g.y", "output g.z")
@@ -296,3 +296,9 @@ def test_whom_a_changed_key_concerns() -> None:
     assert (
         describe_change(changed("component g.a", "requirements", ["R"], ["S"]), gone) == "`g.a`: requirements `R` → `S`"
     )
+
+
+def test_what_has_no_output_yet_is_read_by_nobody(told: Told) -> None:
+    before = "groups: {g: {components: {a: {inputs: {i: b}}, b: {}}}}\n"
+    after = "groups: {g: {components: {b: {}}}}\n"
+    assert told(before, after)[-1] == "  removed connection g.a.i: `g.a.i`, which read `g.b`, was removed"

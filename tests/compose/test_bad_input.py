@@ -26,6 +26,7 @@ def test_types_that_are_made_from_one_another_thousands_of_times_are_too_large()
     assert list_errors(text) == {"too-large"}
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("first_source", "is_fed"), mark_further_samples([("source.o", True), (f"c{DEPTH - 1}.o", False)])
 )

@@ -288,6 +288,55 @@ def test_values_that_files_of_other_packages_may_set_are_not_compared(tmp_path: 
     assert changed.count("scanner") == 1
 
 
+def test_states_and_computers_are_compared_as_far_as_both_sides_tell(tmp_path: Path) -> None:
+    """A node that should stay inactive is; one that nobody activates is not compared; a computer by its id, title or domain name."""
+    text = ROVER.replace("  camera: {implements", "  camera: {kind: lifecycle, start: {state: active}, implements")
+    text = text.replace("  base: {implements", "  base: {kind: lifecycle, start: {state: inactive}, implements")
+    text = text.replace("  arm: {implements", "  arm: {kind: lifecycle, implements")
+    checked_project = check_rover(tmp_path, text)
+    graph = print_graph(checked_project.architecture)
+    states = {"/camera": "active", "/base": "inactive", "/arm": "inactive"}
+    places = "".join(f"$ ros2 lifecycle get {name}\n{state} [2]\n" for name, state in states.items())
+    places += "$ archgen host Base-Computer.lan\n/camera\n/base\n/nobody\n$ archgen host other\n/planner\n$ archgen host ARM-PC\n/arm\n"
+    wrong = places.replace("/camera\nactive", "/camera\nfinalized").replace("ARM-PC\n", "base\n")
+    quiet = {"not-running", "other-qos"}  # an end of a lifecycle node that is not active is not there
+    found = [
+        [(each.rule, each.message) for each in compare_with_graph(checked_project, graph + text).reported.findings]
+        for text in (places, wrong)
+    ]
+    assert [each for each in found[0] if each[0] not in quiet] == []
+    assert [each for each in found[1] if each[0] not in quiet] == [
+        ("other-state", "the lifecycle node `/camera` is finalized on the robot, and active in the design"),
+        ("other-host", "`/arm` runs on `base` on the robot, and on `arm_pc` in the design"),
+    ]
+
+
+def test_a_node_whose_name_nobody_says_is_not_missed(tmp_path: Path) -> None:
+    """As an import of a workspace marks it: what its program calls itself may be there under that name."""
+    text = ROVER.replace("  camera: {implements", "  camera: {hints: {launch: {name: unknown}}, implements")
+    checked_project = check_rover(tmp_path, text)
+    found = compare_with_graph(checked_project, cut_node(print_graph(checked_project.architecture), "/camera"))
+    shown = [each for each in show_findings(found.reported.findings) if "camera" in each]
+    place = f"archgen.yaml:{line_of('  camera: {implements')}"
+    words = "`/camera` does not run on the robot, unless it is called otherwise: its launch file does not say how"
+    assert shown == [f"note not-running {place} {words}"]
+
+
+def test_what_ros_gives_each_node_is_seen_where_the_design_has_it(tmp_path: Path) -> None:
+    """A hidden topic, and the calls by which a manager changes states: not told as strange, and not as missing."""
+    text = ROVER.replace(
+        "image: /image}}\n", "image: /image}, internal: {subscribes: {led: {topic: /hmi/_led}}}}\n"
+    ).replace("topic: /scan, qos", "topic: /_scan, qos")
+    text = text.replace("remaps: {scan: /scan}", "remaps: {scan: /_scan}")
+    checked_project = check_rover(tmp_path, text)
+    graph = print_graph(checked_project.architecture)
+    assert "/_scan" in graph
+    report = compare_with_graph(
+        checked_project, graph.replace("/arm\n  Sub", "/arm\n  Publishers:\n    /_own: a/msg/B\n  Sub")
+    )
+    assert show_findings(report.reported.findings) == []
+
+
 def test_hosts_that_are_not_named_are_not_missed(rover: CheckedProject) -> None:
     graph = cut_node(print_graph(rover.architecture), "/arm")
     assert [each.rule for each in compare_with_graph(rover, graph).reported.findings] == ["not-running"]

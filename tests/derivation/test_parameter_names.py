@@ -165,6 +165,18 @@ def test_a_node_without_a_component_follows_its_parameters_too(tmp_path: Path) -
     assert [(each.use, each.name) for each in endpoints] == [("subscribes", "/wheels")]
 
 
+def test_what_a_parameter_shuts_stays_shut_beside_files_that_cannot_be_read(tmp_path: Path) -> None:
+    text = (
+        "nodes:\n  it: {package: p, executable: e, status: existing, parameters: {stamped: false},"
+        " parameter_files: [$(find-pkg-share p)/a.yaml],"
+        " subscribes: {new: {topic: /new, when: {stamped: true}}, old: {topic: /old, when: {stamped: false}},"
+        " third: {topic: /third, when: {third: true}}}}\n"
+    )
+    (tmp_path / "archgen.yaml").write_text(HEAD + text, encoding="utf-8")
+    endpoints = pipeline.check_project(tmp_path).architecture.endpoints
+    assert [each.name for each in endpoints] == ["/old", "/third"]
+
+
 def test_a_project_without_such_ports_is_left_alone(tmp_path: Path) -> None:
     list_names(tmp_path, "parameters: {}")
     (tmp_path / "archgen.yaml").write_text(HEAD + "groups: {g: {components: {it: {}}}}\n", encoding="utf-8")

@@ -201,6 +201,7 @@ def test_comments_are_renewed_in_place_and_not_begun_without_news(
     assert "goes with `main` and with 1 other open request." in forge.comments[0]["body"]
 
 
+@pytest.mark.slow
 def test_a_schedule_of_gitlab_does_the_same(forge: Forge, clone: Path, tmp_path: Path) -> None:
     forge.user = {"id": 5}
     open_pulls(forge, 10, 12)

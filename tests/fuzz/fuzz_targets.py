@@ -7,6 +7,8 @@ AssertionError where what was read does not hold what the reader promises.
 from __future__ import annotations
 
 import io
+import random
+import re
 import shutil
 import zlib
 from collections.abc import Callable, Sequence
@@ -14,6 +16,7 @@ from contextlib import chdir, redirect_stderr, redirect_stdout, suppress
 from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
+from types import SimpleNamespace
 from typing import Any
 
 import click
@@ -218,7 +221,9 @@ _READING_WORDS = (
     "check", "check --format json", "check --format sarif", "check --format junit", "check --format github", "check --strict", "stats", "stats --format json",
     "timing", "timing --format json", "list", "list --of connections --format csv", "list --of nodes --format json", "list --of parameters", "list --of start_up",
     "start", "start --format json", "owners", "owners --format codeowners", "show a", "show x", "simulate --seconds 1 --seeds 1", "timing --sensitivity c", "timing --budget c",
-    "timing --propose", "timing --why x", "diff one.yaml", "diff one.yaml --format json",
+    "timing --propose", "timing --why x", "diff one.yaml", "diff one.yaml --format json", "fmt --check", "fmt --diff", "check --select x", "check --variant v",
+    "todo --partner {partner}", "todo --partner {partner} --format json", "todo --partner {other} --format markdown", "impact --partner {partner}", "impact --partner {other} --format json",
+    "impact --component {element} --until 2027-01-01", "list --of requirements", "list --of interfaces --format csv", "list --of promises --format json", "show {element}", "timing --why {element}",
 )  # fmt: skip
 _WRITING_WORDS = (
     "pack --keep-going -o out/p.yaml", "pack --resolved --keep-going -o out/r.yaml", "transform flatten --keep-going -o out/t.yaml", "transform resolve_instances remove_generics --keep-going -o out/t.yaml", "transform envelope --keep-going -o out/t.yaml", "transform normalise_connections connect_ports connect_types --keep-going -o out/t.yaml",
@@ -227,15 +232,19 @@ _WRITING_WORDS = (
     "generate ros2_launch --keep-going -o out/w", "generate ros1_python --keep-going -o out/w", "generate ros1_launch --keep-going -o out/w", "generate start --keep-going -o out/w",
     "generate python_simulation --keep-going -o out/w", "generate orocos --keep-going -o out/w", "generate java --keep-going -o out/w", "generate openrtm --keep-going -o out/w",
     "generate player --keep-going -o out/w", "generate orca --keep-going -o out/w", "generate aadl --keep-going -o out/w", "generate nodl --keep-going -o out/w",
-    "interfaces --between p q --keep-going -o out/i.md", "interfaces --between p q --keep-going -o out/i.json", "owners --format codeowners --keep-going -o out/C",
+    "interfaces --between {partner} {other} --keep-going -o out/i.md", "interfaces --between {other} {partner} --keep-going -o out/i.json", "owners --format codeowners --keep-going -o out/C",
 )  # fmt: skip
 _DOCUMENT_WORDS = (
-    "report --keep-going --no-history -o out/r.docx", "report --keep-going --no-history --format xlsx -o out/r.xlsx", "diagram --keep-going -o out/d", "site --keep-going -o out/site",
+    "report --keep-going --no-history -o out/r.docx", "report --keep-going --no-history --format xlsx -o out/r.xlsx", "slides --keep-going -o out/s.pptx", "diagram --keep-going -o out/d", "site --keep-going -o out/site",
     "build --keep-going --backend csv --backend wiki -o out/b", "review -o out/v", "diff one.yaml --format html -o out/d.html", "diff one.yaml --format markdown",
 )  # fmt: skip
 _ADDING_WORDS = (
     "new component {a} --group {b}", "new component {a}.{b} --role filter --functionality {c}", "new group {a} --owner {b}", "new node {a} --implements {b} --host {c}", "new type {a} --is {b} --generic {c}",
     "new instance {a}.{b} {c}", "new variant {a} --without {b}", "new partner {a} --reviewers {b}", "new component {a}", "new component {a}.{b}.{c}",
+)  # fmt: skip
+_EDITING_WORDS = (
+    "rename {a} {b}", "rename {a} {b} --keep-topics --keep-message --keep-title", "rename {a} {b} --kind {c} --keep-chapters", "move {a} {b}", "move {a} --file {b}.yaml",
+    "move {a} {b} --file sub/{c}.yaml", "split archgen.yaml", "split archgen.yaml --by component", "split archgen.yaml --by group", "split archgen.yaml --by section", "check --fix", "fmt",
 )  # fmt: skip
 
 
@@ -271,13 +280,202 @@ def _run_words(choices: Sequence[str]) -> Callable[[Sequence[bytes], Path], None
         number = int(parts[0]) if parts[0].isdigit() else 0
         (folder / "one.yaml").write_bytes(b"archgen: 1\nproject: {id: x}\n")
         (folder / "two.yaml").write_bytes(parts[1])
-        words = choices[number % len(choices)].split()
+        words = _fill_names(choices[number % len(choices)], parts[1]).split()
         # `diff` takes two versions, and verbs that name a backend, a pass or an element have `-C`.
         takes_option = words[0] in {"transform", "export", "generate", "interfaces", "list", "show"}
         words += ["two.yaml"] if words[0] == "diff" else ["-C", "two.yaml"] if takes_option else ["two.yaml"]
         run_verb(words, folder)
 
     return read
+
+
+def _fill_names(words: str, text: bytes) -> str:
+    """Put names of a project into the words of a verb: two of its partners, and a key of it that its bytes choose."""
+    _, _, below = text.partition(b"partners:")
+    partners = [name.decode() for name in re.findall(rb"([a-z]\w*):", below)[:2]] + ["p", "q"]
+    keys = [name.decode() for name in re.findall(rb"([a-z]\w*):", text)] or ["x"]
+    return words.format(partner=partners[0], other=partners[1], element=keys[zlib.crc32(text) % len(keys)])
+
+
+def _list_named_projects() -> list[bytes]:
+    """Return three names of a project and the project, for verbs that rename and move."""
+    made = []
+    for number, text in enumerate(seeds.list_projects()):
+        draw = random.Random(number)  # noqa: S311 - no secrets
+        names = [name for name in re.findall(rb"([a-z]\w*):", text) if len(name) > 1] or [b"x"]
+        lines = b"\n".join(
+            (
+                draw.choice(names),
+                draw.choice((b"fresh", draw.choice(names))),
+                draw.choice((b"component", b"node", b"later")),
+            )
+        )
+        made += [seeds.join_parts(b"%d" % draw.randrange(len(_EDITING_WORDS)), lines, text) for _ in range(3)]
+    return made
+
+
+def _run_editing(parts: Sequence[bytes], folder: Path) -> None:
+    """Edit a project; what may be taken back is, to the last byte, and what is laid out stays so."""
+    number = int(parts[0]) if parts[0].isdigit() else 0
+    names = [*(line[:60] for line in parts[1].decode("utf-8", "replace").replace("\0", "").split("\n")), "a", "b", "c"]
+    (folder / "archgen.yaml").write_bytes(parts[2])
+    before = _read_slices(folder)
+    words = _EDITING_WORDS[number % len(_EDITING_WORDS)].split()
+    run_verb([word.format(a=names[0], b=names[1], c=names[2]) for word in words], folder)
+    after = _read_slices(folder)
+    if words[0] == "fmt":
+        run_verb(["fmt"], folder)
+        assert _read_slices(folder) == after, "laid out twice is another text"
+    elif words[0] != "check" and after != before:
+        run_verb(["undo"], folder)
+        assert _read_slices(folder) == before, "not all is taken back"
+
+
+def _read_slices(folder: Path) -> dict[str, bytes]:
+    return {str(file.relative_to(folder)): file.read_bytes() for file in folder.rglob("*.yaml") if file.is_file()}
+
+
+def _run_conformance(parts: Sequence[bytes], folder: Path) -> None:
+    (folder / "archgen.yaml").write_bytes(parts[0])
+    (folder / "graph.txt").write_bytes(parts[1])
+    run_verb(
+        ["conform", "--against", "graph.txt", *_of_choice(parts[1], ([], ["--format", "json"], ["--strict"]))], folder
+    )
+
+
+def _of_choice(data: bytes, choices: Sequence[list[str]]) -> list[str]:
+    return choices[zlib.crc32(data) % len(choices)]
+
+
+def _list_conformance_seeds() -> list[bytes]:
+    import tempfile
+
+    from tests.conformance import rovers
+
+    with tempfile.TemporaryDirectory() as folder:
+        rover = rovers.check_rover(Path(folder))
+        graph = rovers.print_graph(rover.architecture).encode()
+    return [
+        seeds.join_parts(rovers.ROVER.encode(), graph),
+        *(seeds.join_parts(text, graph) for text in seeds.list_projects()[:100]),
+    ]
+
+
+def _run_beside(parts: Sequence[bytes], folder: Path) -> None:
+    """Read what stands beside a project: what was signed, what is known, what was imported or written before."""
+    number = int(parts[0]) if parts[0].isdigit() else 0
+    name, words = _BESIDE[number % len(_BESIDE)]
+    (folder / "archgen.yaml").write_bytes(parts[2])
+    (folder / name).parent.mkdir(parents=True, exist_ok=True)
+    (folder / name).write_bytes(parts[1])
+    run_verb(words.split(), folder)
+
+
+_BESIDE = (
+    ("agreements/a-b.yaml", "check"),
+    ("archgen-baseline.yaml", "check"),
+    ("archgen-baseline.yaml", "check --update-baseline"),
+    ("ws/.archgen/ros2_python.json", "generate ros2_python --keep-going -o ws"),
+    ("archgen-out/.archgen-files", "build --keep-going --only csv"),
+    ("run.csv", "timing --measured run.csv"),
+    ("run.csv", "timing --measured run.csv --adopt measured.yaml"),
+)
+
+
+def _run_open_branches(parts: Sequence[bytes], folder: Path) -> None:
+    """Merge two branches of a repository that begin at one version."""
+    from tests.repositories import git
+
+    lines: list[bytes] = []
+    for branch, text, start in (("main", parts[0], ""), ("other", parts[1], "main"), ("main", parts[2], "main")):
+        lines += [
+            f"commit refs/heads/{branch}\ncommitter A <a@b> 1700000000 +0000\ndata 1\nx\n".encode(),
+            f"from refs/heads/{start}\n".encode() if start and branch != start else b"",
+            b"M 644 inline archgen.yaml\ndata %d\n%s\n" % (len(text), text),
+        ]
+    git(folder, "init", "-q", "-b", "main", ".")
+    git(folder, "fast-import", "--quiet", stdin=b"".join(lines))
+    run_verb(["merge-check", "main", "other", *_of_choice(parts[1], ([], ["--format", "json"]))], folder)
+
+
+def _run_own_code(parts: Sequence[bytes], folder: Path) -> None:
+    """Make a workspace, put code into its own files, and make it again of another version."""
+    for text in parts[1:]:
+        (folder / "archgen.yaml").write_bytes(text)
+        run_verb(["generate", "ros2_python", "--keep-going", "-o", "ws"], folder)
+        for contract in sorted((folder / "ws").rglob("*_contract.py")):
+            own = contract.with_name(contract.name.replace("_contract", ""))
+            if own.is_file() and parts[0]:
+                own.write_bytes(parts[0])
+    run_verb(["generate", "ros2_python", "--keep-going", "--check", "-o", "ws"], folder)
+
+
+_OWN_CODE = """\
+from std_msgs.msg import Bool
+
+class Own:
+    def __init__(self, node): self.node = node
+    def receive_scan(self, message: "LaserScan") -> None:
+        self.node.publish_stop(Bool(data=self.node.get_parameter("rate").value > 1))
+    def run(self): getattr(self.node, "publish_x")(self)
+"""
+
+
+# --- what editors ask
+
+
+def _ask_server(parts: Sequence[bytes], folder: Path) -> None:
+    """Open a file, type another text, and ask everything at some places of it."""
+    from archgen.lsp.answers import ANSWERS, RefusedRequestError
+
+    (folder / "archgen.yaml").write_bytes(parts[1])
+    server, types = _make_server()
+    uri = (folder / "archgen.yaml").as_uri()
+    text = parts[2].decode("utf-8", "replace")
+    found = server.open_projects.open_file(uri, text)
+    if found is None:
+        return
+    project, file = found
+    project.set_text(file, text)
+    project.check_quickly()
+    project.take_whole_check(project.start_whole_check()())
+    lines = text.split("\n")
+    draw = random.Random(parts[0])  # noqa: S311 - no secrets
+    for method in sorted(ANSWERS):
+        if not method.startswith("textDocument/") or "did" in method:
+            continue
+        line = draw.randrange(len(lines) + 1)
+        place = types.Position(line, draw.randrange(len(lines[line]) + 2) if line < len(lines) else 0)
+        asked = SimpleNamespace(
+            text_document=types.TextDocumentIdentifier(uri),
+            position=place,
+            range=types.Range(types.Position(0, 0), place),
+            context=SimpleNamespace(include_declaration=True, only=None),
+            new_name=parts[0].decode("utf-8", "replace")[:40],
+        )
+        with suppress(RefusedRequestError):
+            ANSWERS[method](server, asked)
+
+
+def _make_server() -> Any:  # noqa: ANN401 - the server, and the types of what it is asked
+    from lsprotocol import types
+    from pygls.workspace import Workspace
+
+    from archgen.lsp.open_projects import OpenProjects
+
+    server = _start_server()
+    server.open_projects = OpenProjects()
+    server.protocol._workspace = Workspace(None)  # noqa: SLF001 - what a client's greeting makes of it
+    server.protocol.client_capabilities = types.ClientCapabilities()
+    server.window_show_message = lambda _: None
+    return server, types
+
+
+@cache
+def _start_server() -> Any:  # noqa: ANN401 - as above
+    from archgen.lsp.language_server import create_server
+
+    return create_server("0")
 
 
 def _run_adding(parts: Sequence[bytes], folder: Path) -> None:
@@ -474,6 +672,12 @@ def list_targets() -> list[Target]:
         Target("documents", ("choice", "yaml"), _run_words(_DOCUMENT_WORDS), lambda: seeds.cross_parts(seeds.number_choices(len(_DOCUMENT_WORDS)), projects()), 8),
         Target("packed", ("yaml",), _read_packed, projects, 8),
         Target("added", ("choice", "lines", "yaml"), _run_adding, lambda: seeds.cross_parts(seeds.number_choices(len(_ADDING_WORDS)), [b"a\nb\nc", b"g\nx\ny", b"sensing\ncamera\nz"], projects()), 6),
+        Target("edited", ("choice", "lines", "yaml"), _run_editing, _list_named_projects, 12),
+        Target("conformed", ("yaml", "lines"), _run_conformance, _list_conformance_seeds, 6),
+        Target("beside", ("choice", "yaml", "yaml"), _run_beside, lambda: seeds.cross_parts(seeds.number_choices(len(_BESIDE)), [*choose(lambda text: "signed:" in text or "findings:" in text, "tests/products", "tests/findings", "tests/cli"), b"{}"], projects()), 4),
+        Target("branches", ("yaml", "yaml", "yaml"), _run_open_branches, lambda: [seeds.join_parts(text, text, text) for text in projects()], 6),
+        Target("own_code", ("python", "yaml", "yaml"), _run_own_code, lambda: [seeds.join_parts(_OWN_CODE.encode(), text, text) for text in projects() if b"nodes:" in text], 6),
+        Target("editor", ("lines", "yaml", "yaml"), _ask_server, lambda: [seeds.join_parts(b"fresh", text, text) for text in projects()], 10),
         Target("merged", ("yaml", "yaml", "yaml"), _run_merge, lambda: [seeds.join_parts(text, text, text) for text in projects()], 6),
         Target("passes", ("yaml", "yaml"), _read_pass, lambda: seeds.cross_parts([*files("passes/*.yaml"), *choose(lambda text: "find:" in text, "tests/passes/patterns")], projects()), 6),
         Target("templates", ("lines",), _read_template, lambda: files("backends/**/*.j2", "archgen/plugins/*/backends/**/*.j2"), 2),

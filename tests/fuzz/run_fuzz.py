@@ -53,10 +53,12 @@ GUIDING_ROOMS = (
         "analyses",
         "checking",
     ),
-    *("passes", "edit", "merge", "git", "diagnostics"),
+    *("passes", "edit", "merge", "git", "diagnostics", "conformance", "lsp", "live"),
 )
 """What is watched for new ways: the rooms that read and judge. To prepare the others, too, takes as long again, and slows each input."""
 PROCESSOR_SECONDS = 10
+_ENDING_SECONDS = 150
+"""What the process of one target may take beside the time to feed it: libFuzzer itself ends an input after 100 s."""
 MEMORY_BYTES = 1_000_000_000
 _MEMORY_FOLDER = "/dev/shm"  # noqa: S108 - whose folders below it are our own
 MAX_BYTES = 20_000
@@ -244,7 +246,7 @@ def _feed_guided(atheris: Any, run: FuzzRun, seconds: float, seed: int) -> NoRet
         f"-seed={seed}",
         f"-max_len={MAX_BYTES}",
         "-rss_limit_mb=0",
-        "-timeout=300",
+        "-timeout=100",
         "-len_control=0",
         f"-artifact_prefix={run.work}/found/{run.target.name}-stopped-",
     ]
@@ -277,12 +279,23 @@ def _prepare_atheris() -> Any:  # noqa: ANN401 - as above
     return atheris
 
 
+def wait_for(child: int, seconds: float) -> None:
+    """Wait until a process ends, and end it where an input waits for ever: only its processor time is limited there."""
+    end = time.monotonic() + seconds
+    with suppress(ChildProcessError):
+        while os.waitpid(child, os.WNOHANG)[0] == 0:
+            if time.monotonic() > end:
+                os.kill(child, signal.SIGKILL)
+                os.waitpid(child, 0)
+                return
+            time.sleep(0.01)
+
+
 def _feed_target(atheris: Any, run: FuzzRun, seconds: float, seed: int) -> None:  # noqa: ANN401 - as above
     """Feed one target in a process of its own."""
     child = os.fork()
     if child:
-        with suppress(ChildProcessError):
-            os.waitpid(child, 0)
+        wait_for(child, 2 * seconds + _ENDING_SECONDS)
         return
     try:
         with Path("/proc/self/statm").open(encoding="ascii") as file:

@@ -9,9 +9,11 @@ import os
 import random
 import subprocess
 import sys
+import tempfile
 import zipfile
 from collections.abc import Callable, Sequence
 from pathlib import Path
+from typing import Any
 
 import pytest
 import yaml
@@ -29,7 +31,20 @@ FUZZ_PYTHON = ROOT / ".make/fuzz-tools/bin/python"
 def start_fuzz(work: Path, *words: str, python: str = sys.executable) -> subprocess.CompletedProcess[str]:
     environment = {**os.environ, "PYTHONPATH": str(ROOT)}
     command = [python, "-m", "tests.fuzz.run_fuzz", "--work", str(work), *words]
-    return subprocess.run(command, cwd=ROOT, env=environment, capture_output=True, text=True, check=False, timeout=1800)  # noqa: S603 - our own program
+    # Files: what is forked there would hold pipes open when it is ended.
+    with tempfile.TemporaryFile("w+") as output, tempfile.TemporaryFile("w+") as errors:
+        settings: dict[str, Any] = {"cwd": ROOT, "env": environment, "stdout": output, "stderr": errors, "timeout": 800}
+        done = subprocess.run(command, check=False, **settings)  # noqa: S603 - our own program
+        output.seek(0)
+        errors.seek(0)
+        return subprocess.CompletedProcess(command, done.returncode, output.read(), errors.read())
+
+
+def test_a_process_that_waits_for_ever_is_ended() -> None:
+    waiting = subprocess.Popen([sys.executable, "-c", "import time; time.sleep(600)"])
+    run_fuzz.wait_for(waiting.pid, 0.05)
+    assert not Path(f"/proc/{waiting.pid}").exists()
+    waiting.wait(10)
 
 
 @pytest.mark.slow

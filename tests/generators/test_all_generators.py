@@ -18,6 +18,7 @@ from archgen.pipeline import CheckedProject, check_project
 from archgen.products.output_options import OutputOptions
 from archgen.products.workspace_product import write_workspace
 from tests import hostile
+from tests.judged_projects import judge_shipped
 from tests.outside_tools import run_judge
 from tests.property_sizes import mark_further_samples
 from tests.running import ROOT, contents
@@ -67,10 +68,10 @@ def test_hostile_text_stays_text(generator: str, hostile_project: CheckedProject
     assert {path.name for path in tmp_path.iterdir()} <= {"ws"}
 
 
-@pytest.fixture(scope="module")
-def judged_twice() -> tuple[CheckedProject, CheckedProject]:
-    """Judge the case study twice, which takes longer than what a generator does with it."""
-    return check_project(ROOT / "example_ramcip"), check_project(ROOT / "example_ramcip")
+@pytest.fixture(scope="module", params=mark_further_samples(["examples/cleaning_robot", "example_ramcip"]))
+def judged_twice(request: pytest.FixtureRequest) -> tuple[CheckedProject, CheckedProject]:
+    """Judge a project twice, which takes longer than what a generator does with it."""
+    return judge_shipped(ROOT / request.param), check_project(ROOT / request.param)
 
 
 @pytest.mark.parametrize("generator", GENERATORS)

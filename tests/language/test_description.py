@@ -64,6 +64,14 @@ def test_generated_files_are_fresh(import_tool: Callable[[str], ModuleType]) -> 
         (lambda d: d.kinds["host"]["keys"]["cores"].update(place=False), "host.cores: `place` is `true`, or left out"),
         (lambda d: d.types["count"].update(place=True), "count: `place` is a word of keys"),
         (lambda d: d.kinds["host"].update(attribute="computer"), "host: `attribute` is a word of keys"),
+        (
+            lambda d: d.other_words["host"].update(cpus="core"),
+            "other_words.yaml: there is no key `host.core`",
+        ),
+        (
+            lambda d: d.other_words["host"].update(title="cores"),
+            "other_words.yaml: `title` is a key of host itself",
+        ),
     ],
 )
 def test_what_is_forgotten_is_told(
@@ -150,6 +158,15 @@ def test_a_kind_in_two_files_is_refused(import_tool: Callable[[str], ModuleType]
         tool.load_description(tmp_path)
 
 
+def test_a_word_of_elsewhere_means_one_key(import_tool: Callable[[str], ModuleType], tmp_path: Path) -> None:
+    tool = import_tool("language_description")
+    for file in (ROOT / "language").glob("*.yaml"):
+        (tmp_path / file.name).write_bytes(file.read_bytes())
+    (tmp_path / "other_words.yaml").write_text("host: {cores: cpus, address: ip cpus}\n", encoding="utf-8")
+    with pytest.raises(tool.DescriptionError, match="host: a word stands at two keys"):
+        tool.load_description(tmp_path)
+
+
 @pytest.mark.parametrize(
     ("spoil", "fault"),
     [
@@ -184,6 +201,7 @@ def test_a_key_is_in_the_record_unless_it_says_why_not(import_tool: Callable[[st
         "cores",
         "tags",
         "scheduling",
+        "address",
         "environment",
         "properties",
         "hints",

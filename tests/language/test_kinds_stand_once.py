@@ -20,11 +20,12 @@ REASONS = {
     "plugins/xmi/xmi_import.py": "the files that a model becomes",
     "link/declare/element_declaration.py": "the class of each kind",
     "link/variants/element_removal.py": "how what is gone is taken out of each section",
+    "lsp/document_outline.py": "the symbol of an editor for each kind",
+    "lsp/element_hints.py": "the colour of an editor for each kind",
     "model/document_chapters.py": "chapters, some of which are called like sections",
     "views/changes/site_changes.py": "kinds with a page of their own",
     "views/elements/element_card.py": "the function that makes each card",
     "views/elements/element_names.py": "the order in which an id that several kinds share is found, and what is named otherwise",
-    "views/explorer/explorer_map.py": "tables of the explorer",
     "views/explorer/map_shapes.py": "tables of the explorer",
     "views/picture_shapes.py": "kinds of pictures, some of which are called like kinds of elements",
     "views/offered_names.py": "sections of which something else than each title is offered",
@@ -34,7 +35,10 @@ REASONS = {
 
 
 def _list_literals(file: Path) -> Iterator[ast.expr]:
-    for node in ast.walk(ast.parse(file.read_text(encoding="utf-8"))):
+    text = file.read_text(encoding="utf-8")
+    if sum(f'"{name}"' in text or f"'{name}'" in text for name in NAMES) < LEAST:
+        return  # most files: they need not be parsed
+    for node in ast.walk(ast.parse(text)):
         items = node.elts if isinstance(node, (ast.Tuple, ast.List, ast.Set)) else []
         items = [key for key in node.keys if key] if isinstance(node, ast.Dict) else items
         texts = [item.value for item in items if isinstance(item, ast.Constant)]

@@ -83,7 +83,8 @@ def test_wrong_values_and_keys_are_refused_where_they_stand(tmp_path: Path) -> N
 
 
 def test_the_title_page_and_the_properties_say_it(tmp_path: Path) -> None:
-    outline = ProductInputs(_check(tmp_path), OutputOptions(revision="r", show_history=False)).printed_report
+    options = OutputOptions(revision="r", show_history=False, document="full")
+    outline = ProductInputs(_check(tmp_path), options).printed_report
     facts = {name: value[0].text for name, value in outline.facts}
     assert facts["Number"] == outline.properties["number"] == "D3.2"
     assert facts["Date"] == "2026-03-31"
@@ -94,7 +95,7 @@ def test_the_title_page_and_the_properties_say_it(tmp_path: Path) -> None:
 
 
 def test_the_command_line_comes_before_the_project(tmp_path: Path) -> None:
-    options = OutputOptions(level="implementation", revision="r", show_history=False)
+    options = OutputOptions(level="implementation", revision="r", show_history=False, document="full")
     outline = ProductInputs(_check(tmp_path), options).printed_report
     (group,) = (section for section in outline.sections if section.anchor == "group:sensing")
     assert any(
@@ -106,7 +107,8 @@ def test_the_command_line_comes_before_the_project(tmp_path: Path) -> None:
 
 def test_left_out_the_ros_side_is_an_annex(tmp_path: Path) -> None:
     source = SOURCE.replace("  level: functional\n", "")
-    outline = ProductInputs(_check(tmp_path, source), OutputOptions(revision="r", show_history=False)).printed_report
+    options = OutputOptions(revision="r", show_history=False, document="full")
+    outline = ProductInputs(_check(tmp_path, source), options).printed_report
     (annex,) = (section for section in outline.sections if section.anchor == "page:nodes")
     assert annex.appendix
     assert [section.title for section in annex.sections[0].sections] == ["Camera", "Screen"]

@@ -35,6 +35,7 @@ containers: {box: box_pc}
 resources: {fpga: laser_pc}
 links: {lan: [pc, laser_pc], three: [pc, box_pc, spare]}
 views: {eyes: "lidar camera -battery", laser: "lidar+", rest: "-lidar"}
+milestones: {m: {date: 2027-03-01, needs: "lidar camera"}, n: {needs: "lidar"}}
 policies: {p: {forbid: {from: battery, to: "role:sink"}}, q: {forbid: {from: "lidar camera", to: drive}}}
 types: {T: sensor_msgs/msg/LaserScan}
 """
@@ -74,6 +75,7 @@ def test_what_serves_nobody_goes_with_what_is_taken_out(tmp_path: Path) -> None:
     assert fusion == {"scan": {"from": ["camera"]}, "image": {"from": ["camera.image"]}, "all": {"from": ["sensing"]}}
     assert "from" not in data["groups"]["driving"]["components"]["drive"]["inputs"].get("level", {})
     assert data["views"] == {"eyes": {"show": "camera"}, "rest": {"show": "*"}}
+    assert data["milestones"] == {"m": {"date": "2027-03-01", "needs": "camera"}}
     assert data["policies"] == {"q": {"forbid": {"from": "camera", "to": "drive"}}}
     # The project itself is as it was.
     assert "sensing.lidar" in checked.architecture.components

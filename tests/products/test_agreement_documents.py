@@ -17,6 +17,7 @@ import archgen
 from archgen.products import agreement_documents
 from archgen.products.agreement_documents import PartnersError
 from archgen.products.compared_versions import read_version
+from archgen.products.outline_markdown import render_outline_markdown
 from archgen.products.output_options import OutputOptions
 from archgen.views.agreement.partner_agreement import PartnerAgreement
 from tests import hostile
@@ -138,7 +139,7 @@ def test_word_opens_it(made: PartnerAgreement, tmp_path: Path) -> None:
 
 
 def test_markdown_holds_nothing_active(made: PartnerAgreement) -> None:
-    text = agreement_documents.render_agreement_markdown(made)
+    text = render_outline_markdown(made.outline, (made.graph,))
     assert not re.search(r"[\x00-\x08\x0b\x0c\x0e-\x1f\x7f-\x9f]", text)
     html = MarkdownIt("commonmark", {"html": True}).enable("table").render(text)
     page = Page()
@@ -266,7 +267,7 @@ def test_who_may_take_how_much_stands_in_the_agreement(
 ) -> None:
     project = checked(tmp_path, SHARED_CHAIN.replace(", deadline: 150 ms", deadline))
     agreement = agreement_documents.make_project_agreement(project, "north", "south", None, "r1")
-    page = agreement_documents.render_agreement_markdown(agreement)
+    page = render_outline_markdown(agreement.outline, (agreement.graph,))
     _, is_there, rest = page.partition("**Who may take how much**\n")
     assert bool(is_there) == bool(table)
     rows = [line for line in rest.partition("<a id")[0].splitlines() if line.startswith("| ")][2:]

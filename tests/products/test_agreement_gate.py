@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import random
 import re
+import shutil
 from collections.abc import Callable
 from pathlib import Path
 
@@ -13,6 +14,7 @@ from archgen.products.compared_versions import compare_named_versions, read_vers
 from archgen.products.merge_breaks import find_breaks
 from tests.cli.conftest import Run, run  # noqa: F401 - the fixture
 from tests.cli.test_signed_agreements import ROBOT
+from tests.property_sizes import list_seeds
 from tests.repositories import git, repository
 
 STRICT = ROBOT.replace("types:", "review: {breaking: {agreement: error, promise: note, wire: note}}\ntypes:", 1)
@@ -21,16 +23,22 @@ BOTH = ("--by", "a", "Ada Lo", "--by", "b", "Ben Bo")
 Sign = Callable[..., None]
 
 
-@pytest.fixture
-def robot(tmp_path: Path) -> Path:
+@pytest.fixture(scope="module")
+def made_robot(tmp_path_factory: pytest.TempPathFactory) -> Path:
     root = repository(
-        tmp_path, {"archgen.yaml": STRICT, "agreements/a-b.yaml": "agreements: {a-b: {terms: {notice: 30 days}}}"}
+        tmp_path_factory.mktemp("made"),
+        {"archgen.yaml": STRICT, "agreements/a-b.yaml": "agreements: {a-b: {terms: {notice: 30 days}}}"},
     )
     (root / FILE).write_text("agreements:\n  a-b:\n    terms:\n      notice: 30 days  # as always\n", encoding="utf-8")
     git(root, "config", "user.name", "Clerk")
     git(root, "config", "user.email", "clerk@x.org")
     git(root, "commit", "-qam", "terms")
     return root
+
+
+@pytest.fixture
+def robot(made_robot: Path, tmp_path: Path) -> Path:
+    return shutil.copytree(made_robot, tmp_path, dirs_exist_ok=True)
 
 
 @pytest.fixture
@@ -307,7 +315,7 @@ EDITS = (
 )
 
 
-@pytest.mark.parametrize("seed", range(4))
+@pytest.mark.parametrize("seed", list_seeds(4))
 def test_whoever_leaves_what_was_signed_is_told(run: Run, robot: Path, sign: Sign, seed: int) -> None:  # noqa: F811
     """Where the base is as signed and the head is not, the change breaks an agreement; and nowhere else."""
     sign()

@@ -11,7 +11,7 @@ import pytest
 from archgen import resources
 from archgen.merge.branch_merge import BranchMerge, preview_merges
 from archgen.merge.merge_sentences import describe_conflict, describe_merge, format_merges_json
-from archgen.products.merge_breaks import find_joint_breaks
+from archgen.products.merge_breaks import BRANCH_JUDGES
 from tests import repositories
 
 READER = ("outputs: {stop: Stop}", "inputs: {profile: sonar.profile}, outputs: {stop: Stop}")
@@ -72,7 +72,7 @@ def branch(folder: Path, name: str, edits: Edits, start: str = "main") -> None:
 
 
 def merge(folder: Path, *branches: str) -> list[BranchMerge]:
-    return list(preview_merges(folder, "main", branches, find_joint_breaks))
+    return list(preview_merges(folder, "main", branches, BRANCH_JUDGES))
 
 
 def say(folder: Path, *branches: str) -> list[str]:

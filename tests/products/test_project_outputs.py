@@ -61,6 +61,16 @@ def test_a_large_site_has_no_picture_of_each_component(
     assert (tmp_path / "build" / "diagrams" / "components" / "g.a.svg").exists()
 
 
+def test_a_site_beside_a_report_links_it_from_each_page(project: CheckedProject, tmp_path: Path) -> None:
+    inputs = product_inputs.ProductInputs(project, OutputOptions(show_history=False))
+    start, component = tmp_path / "site" / "index.html", tmp_path / "site" / "components" / "g.a.html"
+    link = '<a class="report" href="{}report.docx">Report</a>'
+    for names, is_linked in (("site", False), ("report site", True), ("site", True)):
+        full_build.build_outputs(inputs, [PRODUCTS[name] for name in names.split()], tmp_path)
+        assert (link.format("../") in start.read_text()) is is_linked
+        assert (link.format("../../") in component.read_text()) is is_linked
+
+
 def test_no_picture_is_drawn_in_a_format_that_nobody_shows_it_in(
     project: CheckedProject, monkeypatch: pytest.MonkeyPatch
 ) -> None:

@@ -19,9 +19,9 @@ nodes: {a: a, b: b}
 """
 
 
-def _said(path: Path, revision: str = "") -> list[str]:
+def _said(path: Path, revision: str = "", rules: str = "-use") -> list[str]:
     checked = check_at_revision(path, revision) if revision else check_project(path)
-    return [f"{d.severity}[{d.rule}]" for d in checked.findings if d.rule.endswith("-use")]
+    return [f"{d.severity}[{d.rule}]" for d in checked.findings if d.rule.endswith(rules)]
 
 
 def test_a_last_day_has_passed_when_the_newest_commit_is_later(tmp_path: Path) -> None:
@@ -60,3 +60,20 @@ def test_git_is_not_asked_where_nothing_ends_on_a_day(tmp_path: Path) -> None:
     checked = check_project(folder)
     assert find_newest_day(checked.loaded_project.files, checked.architecture) is None
     assert checked.architecture.commit_day is None
+
+
+def test_a_milestone_is_missed_when_its_day_is_over_and_what_it_needs_is_planned(tmp_path: Path) -> None:
+    text = """\
+archgen: 1
+groups: {g: {components: {a: {outputs: {x: std_msgs/msg/Bool}}, b: {inputs: {x: a.x}}}}}
+nodes: {a: {implements: a, status: planned}, b: b}
+milestones: {m: {date: 2024-05-01, needs: NEEDS}, open: {needs: g}, later: {date: 2024-06-01, needs: g}}
+"""
+    folder = repository(tmp_path / "robot", {"archgen.yaml": text.replace("NEEDS", "a")}, day="2024-05-01")
+    assert _said(folder, "", "-milestone") == []
+    commit(folder, {"README.md": "One day later."}, day="2024-05-02")
+    assert _said(folder, "", "-milestone") == ["warning[missed-milestone]"]
+    assert [d.element for d in check_project(folder).findings if d.rule == "missed-milestone"] == ["m"]
+    for changed in (text.replace("NEEDS", "b"), text.replace("NEEDS", "a").replace(", status: planned", "")):
+        (folder / "archgen.yaml").write_text(changed, encoding="utf-8")
+        assert _said(folder, "", "-milestone") == []

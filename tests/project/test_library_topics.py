@@ -15,10 +15,12 @@ from archgen.project.library_reading import load_shipped_component_types
 from archgen.syntax.yaml_tree import MappingNode
 
 NAMELESS = {
+    "gz_spawner": {"robot_description"},
     "move_group": {"follow_joint_trajectory"},
+    "rectify": {"camera_info"},
     "rviz": {"robot_description", "map", "scan", "points", "image", "odometry", "path", "markers"},
 }
-"""Inputs whose names stand in files of a program's own, which no source of the package tells."""
+"""Inputs whose names stand in arguments and files of a program's own, or follow another one's: no source of the package tells them."""
 
 
 def list_uses(body: MappingNode) -> Iterator[tuple[str, str, MappingNode]]:

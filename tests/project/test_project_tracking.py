@@ -23,6 +23,7 @@ def said(checked: pipeline.CheckedProject) -> list[str]:
     return [f"{d.span} {d.rule}: {d.message} | {d.help}" for d in checked.findings]
 
 
+@pytest.mark.slow
 def test_the_case_study_is_the_same_from_disk_and_from_a_commit(tmp_path: Path) -> None:
     files = {f"robots/ramcip/{name}": data for name, data in contents(RAMCIP).items() if "archgen-out" not in name}
     repository(tmp_path, dict(files))

@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 from collections.abc import Iterator
 from typing import Any
+from urllib.parse import quote
 
 import jsonschema_rs
 import pytest
@@ -39,16 +40,40 @@ def test_it_is_a_schema() -> None:
     jsonschema_rs.meta.validate(SCHEMA)
 
 
-@pytest.mark.parametrize("path", PARTS)
-def test_everything_is_explained_and_every_example_holds(path: str) -> None:
-    part = PARTS[path]
-    assert part["title"]
-    assert part["description"].rstrip().endswith((".", "`", ")"))
-    validator = jsonschema_rs.Draft202012Validator({**part, "$defs": SCHEMA["$defs"]})
-    examples = examples_of(part)
-    assert examples
-    for example in examples:
-        validator.validate(example)
+def test_everything_is_explained_and_every_example_holds() -> None:
+    registry = jsonschema_rs.Registry([("schema:", SCHEMA)])
+    faults = {path: list(_find_faults(path, registry)) for path in PARTS}
+    assert {path: found for path, found in faults.items() if found} == {}
+    assert len(faults) > 500
+
+
+def _find_faults(path: str, registry: jsonschema_rs.Registry) -> Iterator[str]:
+    part, examples = PARTS[path], examples_of(PARTS[path])
+    if not part["title"]:
+        yield "no title"
+    if not part["description"].rstrip().endswith((".", "`", ")")):
+        yield "a description that ends in the midst of a sentence"
+    if not examples:
+        yield "no example"
+    validator = jsonschema_rs.Draft202012Validator({"$ref": f"schema:#{quote(path)}"}, registry=registry)
+    yield from (error.message for example in examples for error in validator.iter_errors(example))
+
+
+@pytest.mark.parametrize(
+    ("key", "value", "fault"),
+    [
+        ("title", "", "no title"),
+        ("description", "An id of", "a description that ends in the midst of a sentence"),
+        ("examples", [], "no example"),
+        ("examples", [{}], "{} is not of type"),
+    ],
+)
+def test_what_is_not_explained_is_found(monkeypatch: pytest.MonkeyPatch, key: str, value: object, fault: str) -> None:
+    path = next(path for path, part in PARTS.items() if part.get("examples") and part.get("type") == ["string", "null"])
+    monkeypatch.delitem(PARTS[path], "defaultSnippets", raising=False)
+    monkeypatch.setitem(PARTS[path], key, value)
+    found = list(_find_faults(path, jsonschema_rs.Registry([("schema:", SCHEMA)])))
+    assert found[0].startswith(fault)
 
 
 def test_every_definition_is_used() -> None:

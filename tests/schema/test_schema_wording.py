@@ -27,7 +27,7 @@ def _timing(text: str) -> list[str]:
         ("groups: {g: {titel: G}}", "1:14 unknown-key: a functional group has no key `titel` | did you mean `title`?"),
         ("groups: {g: {'title:G': }}", "1:14 unknown-key: a functional group has no key `title:G` | write a blank after the colon: `title: G`"),
         ("groups: []", "1:1 wrong-type: `groups` is a list, but must be a mapping | write `{}` for none"),
-        ("groups: [a]", "1:1 wrong-type: `groups` is a list, but must be a mapping | `groups` is keyed by id: write `id: ...` lines instead of a list"),
+        ("groups: [a]", "1:1 wrong-type: `groups` is a list, but must be a mapping | `groups` is keyed by id: write `{a: {}}` instead of a list"),
         ("archgen: 2", "1:10 wrong-value: this archgen reads version 1 of the language, not `2` | write `1`"),
         ("groups: {g: {components: {c: {role: filtre}}}}", None),
         ("nodes: {n: {timing: {prio: 20}}}", "1:22 unknown-key: a timing has no key `prio` | did you mean `priority`?"),

@@ -164,7 +164,7 @@ def test_a_day_of_editing_does_not_fill_the_memory(live_site: LiveSite, robot: P
     for number in range(5):
         (robot / "archgen.yaml").write_text(f"{ROBOT}# {number}\n")
         live_site.refresh()
-    assert len(live_site._cache.parsed_slices) == 1  # noqa: SLF001 - nothing else shows it
+    assert len(live_site._project.cache.parsed_slices) == 1  # noqa: SLF001 - nothing else shows it
 
 
 @pytest.mark.parametrize("selector", ["", "g.eye"])

@@ -16,7 +16,7 @@ import pytest
 from click.testing import CliRunner
 
 from archgen.cli import main
-from archgen.serve import file_watch
+from archgen.live import file_watch
 from tests.running import ROOT
 from tests.serve.conftest import ROBOT
 

@@ -84,6 +84,17 @@ def test_nothing_is_kept_guessed_framed_or_handed_to_other_sites(server: SiteSer
         assert "Access-Control-Allow-Origin" not in headers
 
 
+def test_an_editor_that_starts_it_may_frame_it_and_nobody_else(server: SiteServer) -> None:
+    in_editor = SiteServer(server.live_site, "127.0.0.1", 0, in_editor=True)
+    threading.Thread(target=in_editor.serve_forever, kwargs={"poll_interval": 0.05}, daemon=True).start()
+    try:
+        policy = ask(in_editor, "/").headers["Content-Security-Policy"]
+    finally:
+        in_editor.shutdown()
+        in_editor.server_close()
+    assert policy == "frame-ancestors vscode-webview: https://*.vscode-cdn.net"
+
+
 @pytest.mark.parametrize(
     "path",
     [

@@ -10,6 +10,7 @@ import pytest
 
 from archgen.simulation.analysis_bounds import find_publish_pauses
 from archgen.simulation.schedule_log import LateSchedule, record_schedule
+from tests.property_sizes import list_seeds
 from tests.running import ROOT
 from tests.simulation.late_robot import analyse, record_witnesses
 from tests.timing.random_styles import random_style_text
@@ -78,9 +79,10 @@ def test_what_is_recorded_is_the_same_each_time() -> None:
     assert record_witnesses() == record_witnesses()
 
 
-@pytest.mark.parametrize("seed", range(0, 60, 3))
-def test_each_late_run_adds_up(seed: int) -> None:
+@pytest.mark.parametrize("number", list_seeds(20))
+def test_each_late_run_adds_up(number: int) -> None:
     """Of random projects of all styles, with deadlines half of their bounds."""
+    seed = 3 * number
     text = random_style_text(seed)
     _, analysis, results = analyse(text)
     pauses = find_publish_pauses(analysis)

@@ -6,6 +6,7 @@ from fractions import Fraction
 
 import pytest
 
+from archgen.simulation import simulate_system
 from archgen.simulation.simulation_result import ChainFigures, DurationDistribution, ObservedChain, list_seen_shares
 from archgen.timing.chains.chain_bounds import bound_all_chains
 from archgen.timing.run_analysis import analyse_architecture
@@ -37,3 +38,10 @@ def test_a_share_is_judged_by_what_it_took_where_enough_was_seen(count: int, ver
     ]
     nothing = ObservedChain(("a", "b"), ChainFigures(None, None, None, None, 0), None)
     assert [(each.seen, each.verdict) for each in list_seen_shares(nothing, result)] == [(None, "too few")] * 2
+
+
+def test_runs_are_counted_while_they_are_simulated() -> None:
+    system = analyse_architecture(read_sketch({"a": "period: 100 ms, wcet: 1 ms"}, "", "")).system
+    told: list[tuple[int, int]] = []
+    simulate_system(system, 1, 3, progress=lambda done, total: told.append((done, total)))
+    assert told == [(0, 3), (1, 3), (2, 3), (3, 3)]

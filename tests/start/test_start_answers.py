@@ -74,3 +74,10 @@ def test_partners_of_a_table_do_not_replace_those_that_were_typed() -> None:
         PartnerAnswer("certh", "First"),
         PartnerAnswer("sssa", "S"),
     )
+
+
+def test_a_folder_and_words_that_are_no_utf_8_become_texts_that_can_be_written() -> None:
+    """As Python names them: a byte that is no UTF-8 is a lone surrogate."""
+    answers = start_answers.collect_answers("\udcff", title="r\udcfe", partners=["lab=Lab\udcff"])
+    assert (answers.title, answers.partners[0].title) == ("r?", "Lab?")
+    assert start_answers.collect_answers("my \udcff").title == "my ?"

@@ -111,6 +111,10 @@ QUOTE = 'put the text in quotes: "..."'
         ("t: 'b", "1:4 syntax-error: this quote is never closed | write `'` at its end"),
         ("t: [1, 2\nb: 3", "1:4 syntax-error: this `[` is not closed | write `]` at its end"),
         ("t: {a, b: 1}", "1:5 syntax-error: the key `a` has no `:` | write `key: value`; a list stands in brackets: [a, b]"),
+        (
+            "t: {j: Timed<A, B>}",
+            '1:17 syntax-error: the key `B>` has no `:` | within braces a generic type of two stands in quotes, since its comma ends the value: "Pair<A, B>"',
+        ),
         ("t: {b: 1, a}", "1:11 syntax-error: the key `a` has no `:` | write `key: value`; a list stands in brackets: [a, b]"),
         ("t: [a]\n[b]: 1", "2:1 syntax-error: a key is a word, not a list or a mapping | text in braces or brackets must be quoted"),
         ("<<: {a: 1}", "1:1 syntax-error: merge keys (`<<`) are not read | write the keys out, or share a whole value with `*name`"),

@@ -13,7 +13,7 @@ import pytest
 
 from archgen.emit.terminal import timing_text
 from archgen.timing.analysis import Analysis
-from archgen.timing.figures.response_tier import ResponseTier
+from archgen.timing.figures.timing_values import ResponseTier
 from archgen.timing.load import host_loads
 from archgen.views.timing import timing_tables
 from tests.timing.sketches import analyse_sketch

@@ -6,6 +6,8 @@ import re
 import shutil
 from pathlib import Path
 
+import pytest
+
 from archgen import pipeline
 from archgen.timing.chains.chain_bounds import bound_all_chains
 from archgen.timing.run_analysis import analyse_architecture
@@ -24,6 +26,7 @@ def copy_without_cores(folder: Path) -> Path:
     return project
 
 
+@pytest.mark.slow
 def test_no_chain_is_missed_where_no_node_is_pinned(tmp_path: Path) -> None:
     project = copy_without_cores(tmp_path)
     architecture = pipeline.check_project(project).architecture

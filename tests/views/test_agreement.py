@@ -11,7 +11,7 @@ import pytest
 from archgen import pipeline, resources
 from archgen.link.interface_sources import load_interfaces
 from archgen.model.partner_interfaces import find_all_interfaces, find_interfaces_between
-from archgen.products import agreement_documents
+from archgen.products.outline_markdown import render_outline_markdown
 from archgen.views.agreement.message_fields import field_table, list_field_rows
 from archgen.views.agreement.partner_agreement import PartnerAgreement, make_agreement
 from archgen.views.shapes import Outline, Table
@@ -284,9 +284,8 @@ def test_the_project_s_own_business_is_no_part_of_an_agreement(tmp_path: Path) -
     assert source != DUO
     project = checked(tmp_path, source)
     assert {finding.rule for finding in project.findings} >= {"unknown-requirement", "unread-output"}
-    words = agreement_documents.render_agreement_markdown(
-        make_agreement(view(project), "north", "south", revision="r1")
-    )
+    agreement = make_agreement(view(project), "north", "south", revision="r1")
+    words = render_outline_markdown(agreement.outline, (agreement.graph,))
     for rule in ("unknown-requirement", "unread-output", "archgen.yaml", "warning", "finding"):
         assert rule not in words
 

@@ -43,6 +43,7 @@ chains:
   owed: {title: Owed, through: [h.ear, h.mouth], deadline: 3 s}
   late: {title: Late, through: [g.eye, g.brake], deadline: 40 ms}
   never: {title: Never, through: [g.eye, g.brake], deadline: 1 ms}
+rules: {open-chain: off}
 """
 
 
@@ -109,6 +110,20 @@ def test_open_points_count_findings_and_the_chains_that_none_is_about(tmp_path: 
     )
     assert "requirement:R-3" in {run.ref for run in uncovered}
     assert uncovered[-1].text == "robot.yaml:2"
+
+
+def test_of_many_points_and_partners_fewer_are_shown(tmp_path: Path) -> None:
+    parts = "".join(f"  g{at}: {{components: {{a: {{owner: p{at % 9}, outputs: {{o: }}}}}}}}\n" for at in range(60))
+    partners = ", ".join(f"p{at}: {{}}" for at in range(9))
+    lookup = look_up(tmp_path, f"partners: {{{partners}}}\ngroups:\n{parts}")
+    cards = dashboard.make_dashboard(lookup, DocumentEdition()).cards
+    (points,), (table,) = (find_card(cards, title).blocks for title in ("Open points", "Progress by partner"))
+    assert isinstance(points, Bullets)
+    assert isinstance(table, Table)
+    assert (len(points.items), len(table.rows)) == (3, 6)
+    link = find_card(cards, "Progress by partner").link
+    assert link
+    assert link.text == "3 more, and by group"
 
 
 def test_partners_with_most_left_to_do_come_first(tmp_path: Path) -> None:

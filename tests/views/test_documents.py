@@ -94,7 +94,7 @@ def test_the_report_names_every_place_once(checked: CheckedProject, whole: Looku
 def test_the_report_keeps_the_order_of_chapters(checked: CheckedProject, whole: Lookup) -> None:
     outline = report_outline.make_report(whole, _edition(checked, whole))
     titles = [section.title for section in outline.sections]
-    assert titles[:5] == ["Introduction", "Scenarios", "Use cases", "Overview", "Cognitive Reasoning"]
+    assert titles[:5] == ["Introduction", "Scenarios", "Between partners", "Use cases", "Overview"]
     assert titles[-5:] == ["Type mapping", "Connections", "Requirements trace", "Open points", "Statistics"]
     assert [section.appendix for section in outline.sections] == [False] * (len(titles) - 5) + [True] * 5
 

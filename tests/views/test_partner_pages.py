@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import tracemalloc
 from pathlib import Path
 
 import pytest
@@ -11,7 +12,7 @@ from archgen.pipeline import check_project
 from archgen.products.project_views import list_signed_tags
 from archgen.views.agreement import exchange_tables
 from archgen.views.agreement.exchange_tables import gather_exchanges
-from archgen.views.agreement.signature_record import SignedTag
+from archgen.views.agreement.interface_record import SignedTag
 from archgen.views.lookup import DocumentScope, Lookup, make_lookup
 from archgen.views.pages import partner_pages
 from archgen.views.shapes import Facts, Inlines, Page, Paragraph, Table
@@ -166,3 +167,16 @@ def test_signatures_of_all_pairs_are_found_by_the_names_of_tags(tmp_path: Path) 
         ("north", "south"): ["signed/north-south/1"],
         ("north", "west"): ["signed/west-north/a"],
     }
+
+
+def test_four_hundred_partners_are_not_joined_to_pairs_for_their_tags(tmp_path: Path) -> None:
+    partners = "".join(f"p{number}: {{}}, " for number in range(400))
+    repository(tmp_path, {"robot.yaml": f"archgen: 1\npartners: {{{partners}}}\n"})
+    git(tmp_path, "tag", "-a", "signed/p399-p7/1", "-m", "words")
+    checked_project = check_project(tmp_path / "robot.yaml")
+    tracemalloc.start()
+    tags = list_signed_tags(checked_project)
+    _, peak = tracemalloc.get_traced_memory()
+    tracemalloc.stop()
+    assert list(tags) == [("p7", "p399")]
+    assert peak < 5_000_000  # 80,000 pairs take four times that

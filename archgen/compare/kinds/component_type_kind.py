@@ -9,12 +9,10 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from typing import Any
 
-from archgen.compare.kinds.functional_kinds import COMPONENT
+from archgen.compare.kinds.functional_kinds import COMPONENT, INPUT, OUTPUT
 from archgen.compare.kinds.key_spec import Effect, KeySpec, ReadContext, Worsening, find_type_owner, key_values
 from archgen.compare.kinds.kind_spec import FeatureSpec, KindSpec, name_features, text_feature
-from archgen.compare.kinds.port_kinds import INPUT, OUTPUT
 from archgen.compare.kinds.ros_kinds import NODE
-from archgen.compare.normal_values import drop_unset_values
 from archgen.frozen import replace
 from archgen.model.component import Component, ComponentType, Input, Output
 
@@ -51,7 +49,7 @@ def _list_port_values(
     ports: Iterable[Input | Output], keys: tuple[KeySpec, ...], context: ReadContext
 ) -> Iterator[tuple[str, object]]:
     for port in ports:
-        values = drop_unset_values(key_values(keys, port, context))
+        values = key_values(keys, port, context)
         yield port.name, values.pop("type", "?")
         yield from ((f"{port.name}{PART_MARK}{key}", value) for key, value in values.items())
 
@@ -73,7 +71,7 @@ def _read_parts(component_type: ComponentType, context: ReadContext) -> Mapping[
     patterns = context.version.type_patterns
     values: dict[str, object] = {}
     for path, pattern in patterns.list_parts(component_type.id):
-        own_values = drop_unset_values(key_values(_PART_KEYS, pattern, context))
+        own_values = key_values(_PART_KEYS, pattern, context)
         own_values |= {f"node.{key}": value for key, value in _read_node_at(pattern, context).items()}
         for side, ports, keys in (
             ("inputs", pattern.inputs.values(), INPUT.keys),
@@ -92,7 +90,7 @@ def _read_node(component_type: ComponentType, context: ReadContext) -> Mapping[s
 
 def _read_node_at(pattern: Component, context: ReadContext) -> Mapping[str, object]:
     node: Any = context.version.type_patterns.nodes.get(pattern.id)
-    return drop_unset_values(key_values(_RAN_KEYS, node, context)) if node else {}
+    return key_values(_RAN_KEYS, node, context) if node else {}
 
 
 def _mark_ports(component_type: ComponentType) -> frozenset[str]:
@@ -102,7 +100,9 @@ def _mark_ports(component_type: ComponentType) -> frozenset[str]:
 
 _PATTERN_KEYS = tuple(
     # What timing and partners lose is judged at the instances.
-    replace(key, read=_read_pattern(key), effect=min(key.effect, Effect.SYSTEM), worsening=Worsening.NEVER)
+    replace(
+        key, read=_read_pattern(key), effect=min(key.effect, Effect.SYSTEM), worsening=Worsening.NEVER, attribute=""
+    )
     for key in COMPONENT.keys
     if key.name not in OWN_KEYS | _WRITTEN_KEYS
 )

@@ -43,7 +43,12 @@ def _make_key(name: str, facts: KeyFacts, own_reader: Reader | None) -> KeySpec:
         facts.get("new_verb", ""),
         is_prose=facts.get("form") == "prose",
         inner=inner,
+        attribute="" if own_reader or facts.get("form") in _FORMS_ELSEWHERE else attribute,
     )
+
+
+_FORMS_ELSEWHERE = frozenset({"properties", "hints", "entries"})
+"""The forms whose values stand in no attribute of their own."""
 
 
 def _read_below(attribute: str, find_holder: Reader | None, keys: tuple[KeySpec, ...]) -> Reader:

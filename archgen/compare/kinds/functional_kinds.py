@@ -2,15 +2,20 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable, Mapping
 from operator import attrgetter
+from typing import Any
 
-from archgen.compare.kinds.component_keys import is_mapped
-from archgen.compare.kinds.key_spec import CO_OWNERS, Effect, KeySpec, read_owner
+from archgen.compare.architecture_version import ArchitectureVersion
+from archgen.compare.element_likeness import letter_pairs
+from archgen.compare.kinds.key_readers import is_mapped
+from archgen.compare.kinds.key_spec import CO_OWNERS, Effect, KeySpec, ReadContext, key_values, read_owner
 from archgen.compare.kinds.kind_spec import (
     NAME_FEATURES,
     FeatureSpec,
     KindSpec,
     list_last_names,
+    list_port_holders,
     mark_neighbours,
     mark_performance,
     mark_ports,
@@ -21,8 +26,87 @@ from archgen.compare.kinds.kind_spec import (
     reference_feature,
     text_feature,
 )
-from archgen.compare.kinds.port_kinds import INPUT, OUTPUT, read_own_output_words
 from archgen.compare.version_pair import MAPPED_KEY
+from archgen.model.component import Component, Input, Output
+
+
+def _port_parent(port: Input | Output, context: ReadContext) -> tuple[str, str]:
+    return ("component", context.matched_ids.common_id("component", port.component))
+
+
+_PORT_FEATURES = (
+    FeatureSpec("name", 2, lambda _, port: letter_pairs(port.name)),
+    FeatureSpec("type", 4, lambda _, port: mark_values(port.type)),
+    FeatureSpec("topics", 3, lambda relations, port: frozenset(relations.topics_by_port[port.id])),
+    text_feature(1, "description", "external"),
+)
+
+
+def _make_port_kind(
+    name: str, elements: Callable[[ArchitectureVersion], Mapping[str, Any]], other_ends: FeatureSpec
+) -> KindSpec:
+    """Make the kind of a port: what inputs and outputs have in common, and what only one of the two has."""
+    return KindSpec(
+        name,
+        None,
+        elements=elements,
+        features=(*_PORT_FEATURES, other_ends),
+        has_path_id=True,
+        parent_kind="component",
+        stays_in_parent=True,
+        parent=_port_parent,
+        owner=lambda port, context: context.common_id("partner", context.architecture.components[port.component].owner),
+        components=lambda port, context: (_port_parent(port, context)[1],),
+        surroundings=lambda port, context: context.architecture.components[port.component],
+    )
+
+
+OUTPUT = _make_port_kind(
+    "output",
+    lambda version: version.architecture.outputs,
+    FeatureSpec(
+        "readers",
+        5,
+        lambda relations, port: relations.common_ids(
+            "component", list_port_holders(relations.readers_by_output[port.id])
+        ),
+    ),
+)
+INPUT = _make_port_kind(
+    "input",
+    lambda version: version.architecture.inputs,
+    FeatureSpec(
+        "sources",
+        5,
+        lambda relations, port: relations.common_ids("output", relations.outputs_by_input[port.id]),
+    ),
+)
+_OWN_WORDS = tuple(key for key in OUTPUT.keys if key.name in {"version", "promise.", "deprecated."})
+"""What a composed component may say of its outputs itself."""
+
+
+def read_own_output_words(shell: Component, context: ReadContext) -> Mapping[str, object]:
+    """Return what a composed component says itself of its outputs, by `output:key`; what it passes on is told there."""
+    return {
+        f"{output.name}:{key}": value
+        for output in shell.outputs.values()
+        if output.promise or output.version or output.deprecated
+        for key, value in _read_own_words(output, context).items()
+    }
+
+
+def _read_own_words(output: Output, context: ReadContext) -> Mapping[str, object]:
+    targets = context.architecture.shell_ports.get(f"output {output.id}", ())
+    component = context.architecture.find_component(targets[0].rpartition(".")[0]) if len(targets) == 1 else None
+    given = component.outputs.get(targets[0].rpartition(".")[2]) if component else None
+    given_words = _read_words(given, context) if given else {}
+    return {key: value for key, value in _read_words(output, context).items() if given_words.get(key) != value}
+
+
+def _read_words(output: Output, context: ReadContext) -> dict[str, object]:
+    """Return what is said of an output that a composed component may say itself, too, by the keys of its kind."""
+    return key_values(_OWN_WORDS, output, context)
+
 
 GROUP = KindSpec(
     "group",
@@ -84,6 +168,7 @@ COMPONENT = KindSpec(
     parent=lambda component, context: ("group", context.matched_ids.common_id("group", component.group)),
     owner=read_owner,
     components=lambda component, context: (context.matched_ids.common_id("component", component.id),),
+    surroundings=lambda component, context: context.nodes_by_component.get(component.id),
 )
 
 

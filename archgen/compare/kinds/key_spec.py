@@ -10,6 +10,7 @@ from typing import Any
 
 from archgen.compare.architecture_version import ArchitectureVersion
 from archgen.compare.matched_ids import MatchedIds
+from archgen.compare.normal_values import is_unset
 from archgen.frozen import dataclass
 from archgen.model.architecture import Architecture
 from archgen.model.component import Component, ComponentType, Group
@@ -141,6 +142,8 @@ class KeySpec:
     """Whether the value is a text of several lines, of which sentences only say that it changed."""
     inner: tuple[KeySpec, ...] = ()
     """The keys below a name that ends in a dot, if they are known: without the name in front."""
+    attribute: str = ""
+    """The attribute that alone is read: where it is None or an empty collection, the key is not set."""
 
     def value_of(self, element: object, context: ReadContext) -> object:
         """Return the value of the key in normal form."""
@@ -148,15 +151,20 @@ class KeySpec:
 
 
 def key_values(keys: Sequence[KeySpec], element: object, context: ReadContext) -> dict[str, object]:
-    """Return the values of all keys of an element by name."""
+    """Return the values of all keys of an element by name, without those that are not set."""
     values: dict[str, object] = {}
     for key in keys:
+        # Most keys of most elements are not set: then no reader is called.
+        if key.attribute and not (written := getattr(element, key.attribute)) and is_unset(written):
+            continue
         value = key.value_of(element, context)
+        if not value and is_unset(value):
+            continue
         if not key.name.endswith("."):
             values[key.name] = value
         elif value:
             # Such a key reads a mapping, whatever its element; of most elements it is empty.
-            values.update({f"{key.name}{name}": inner for name, inner in value.items()})  # type: ignore[attr-defined]
+            values |= {f"{key.name}{name}": inner for name, inner in value.items() if not is_unset(inner)}  # type: ignore[attr-defined]
     return values
 
 

@@ -73,6 +73,8 @@ class KindSpec:
     """Returns the common ids of the components behind an element."""
     is_declared: Callable[[Any], bool] = lambda _: True
     """False for what exists without a declaration (a type that is only used)."""
+    surroundings: Callable[[Any, ReadContext], object] | None = None
+    """Returns what else of a version is read of an element than the element itself; None where anything may be."""
     like: str = ""
     """The described kind whose keys it has, if not its own."""
     without: frozenset[str] = frozenset()

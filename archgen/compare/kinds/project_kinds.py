@@ -85,6 +85,7 @@ _SETTING_KEYS = (
     KeySpec(
         "environment.", lambda _, context: {each.name: each.value for each in context.architecture.ros_environment}
     ),
+    KeySpec("discovery", lambda _, context: context.architecture.ros_discovery),
     KeySpec("shared_topics", lambda _, context: unordered_values(context.architecture.shared_topics)),
     KeySpec(
         "parameters.",

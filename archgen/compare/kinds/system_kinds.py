@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from archgen.compare.element_likeness import word_set
 from archgen.compare.element_relations import ElementRelations
-from archgen.compare.kinds.key_spec import KeySpec, ReadContext, Worsening
+from archgen.compare.kinds.key_spec import KeySpec, ReadContext, Worsening, read_owner
 from archgen.compare.kinds.kind_spec import (
     NAME_FEATURES,
     FeatureSpec,
@@ -88,6 +88,7 @@ LINK = KindSpec(
             "figures", 2, lambda _, link: mark_values(link.bandwidth, f"best {link.best}", f"worst {link.worst}")
         ),
     ),
+    owner=read_owner,
 )
 
 

@@ -110,20 +110,19 @@ class ChangeContext:
 
     def change_indices(self, kind: str, name: str, *keys: str) -> list[int]:
         """Return the indices of an element's changes: of the given keys, or all."""
-        indexed_changes = self._changes_by_key.get((kind, name), ())
-        return list(
-            dict.fromkeys(index for index, found_change in indexed_changes if not keys or found_change.key in keys)
-        )
+        return self.list_indices(kind, name, lambda change: not keys or change.key in keys)
 
     def indices_by_change_kind(self, kind: str, name: str, *change_kinds: str) -> list[int]:
         """Return the indices of an element's changes of certain kinds ("removed", "renamed")."""
-        return list(
-            dict.fromkeys(
-                index
-                for index, found_change in self._changes_by_key.get((kind, name), ())
-                if found_change.kind in change_kinds
-            )
-        )
+        return self.list_indices(kind, name, lambda change: change.kind in change_kinds)
+
+    def indices_below(self, kind: str, name: str, beginning: str) -> list[int]:
+        """Return the indices of an element's changes of the keys that begin so."""
+        return self.list_indices(kind, name, lambda change: (change.key or "").startswith(beginning))
+
+    def list_indices(self, kind: str, name: str, is_meant: Callable[[Change], bool]) -> list[int]:
+        """Return the indices of those changes of an element that are meant, each once."""
+        return list(dict.fromkeys(index for index, change in self.find_changes(kind, name) if is_meant(change)))
 
     def owners_of_change(self, change_index: int) -> frozenset[str]:
         """Return the partner who owns what changed, nobody if nobody owns it."""
@@ -139,10 +138,7 @@ class ChangeContext:
 
         An element that changes hands is nobody's: otherwise naming a new owner would be enough to change it quietly.
         """
-        element_versions = (
-            elements.get((kind, name)) for elements in (self.versions.elements_before, self.versions.elements_after)
-        )
-        owner_ids = {element.owner for element in element_versions if element}
+        owner_ids = {element.owner for element in self.versions.find_both(kind, name) if element}
         return frozenset(owner for owner in owner_ids if owner and len(owner_ids) == 1)
 
     def shared_losses(
@@ -227,8 +223,7 @@ class ChangeContext:
     def owner_before(self, kind: str, name: str) -> str | None:
         """Return the partner who owned an element before the change; for a new element, who owns it."""
         # The first version decides: who loses something is who had it.
-        element = self.versions.elements_before.get((kind, name)) or self.versions.elements_after.get((kind, name))
-        return element.owner if element else None
+        return self.versions.find_owner(kind, name)
 
     def needs_source(self, input_id: str) -> bool:
         """Whether an input existed before the change and was not optional.
@@ -329,25 +324,28 @@ class ChangeContext:
     def foreign_readers(self, output_id: str, readers: Iterable[str]) -> Mapping[str, list[str]]:
         """Return those of the inputs that needed an output, by partner, without the partner who owns the output."""
         lasting_owners = self.lasting_owners("output", output_id)
+        inputs_by_partner = sorted(self.group_readers(readers).items())
+        return {partner: inputs for partner, inputs in inputs_by_partner if partner not in lasting_owners}
+
+    def group_readers(self, readers: Iterable[str]) -> Mapping[str, list[str]]:
+        """Return those of some inputs that needed what they read, by partner."""
         inputs_by_partner: dict[str, list[str]] = defaultdict(list)
         for reader in sorted(filter(self.needs_source, readers)):
             partner = self.owner_before("input", reader)
-            if partner and partner not in lasting_owners:
+            if partner:
                 inputs_by_partner[partner].append(reader)
-        return dict(sorted(inputs_by_partner.items()))
+        return inputs_by_partner
 
     def port_change_indices(self, node_id: str, port_id: str, *keys: str) -> list[int]:
         """Return the indices of changes of what a node says of a component's port, or of its internal ones if `port` is
         empty.
         """
-        indices: list[int] = []
-        for index, change in self.find_changes("ports of", node_id):
+
+        def is_meant(change: Change) -> bool:
             name = self.common_id(change)
-            element = self.versions.elements_after.get(("port", name)) or self.versions.elements_before.get(
-                ("port", name)
-            )
+            element = self.versions.find_latest("port", name)
             component_refs = element.component_refs if element else ()
             is_asked_port = port_id in component_refs if port_id else name.startswith(f"{node_id}.internal.")
-            if is_asked_port and (not keys or change.key in keys or change.kind != "changed"):
-                indices.append(index)
-        return list(dict.fromkeys(indices))
+            return is_asked_port and (not keys or change.key in keys or change.kind != "changed")
+
+        return self.list_indices("ports of", node_id, is_meant)

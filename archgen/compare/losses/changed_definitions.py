@@ -7,7 +7,7 @@ from collections.abc import Iterator, Mapping, Sequence
 
 from archgen.compare.comparison import Change
 from archgen.compare.losses.change_context import ChangeContext, PartnerLoss, tick_name, tick_sorted_names
-from archgen.compare.losses.weakened_words import compare_deprecations
+from archgen.compare.losses.weakened_words import compare_lives
 from archgen.compare.matched_ids import MatchedIds
 from archgen.model.architecture import Architecture
 from archgen.model.component import ComponentType
@@ -15,7 +15,6 @@ from archgen.model.graph_search import find_reachable
 from archgen.model.known_interfaces import Interface
 from archgen.model.message_types import ConceptualType
 from archgen.model.port_media import describe_carried
-from archgen.model.review_settings import BreakCategory
 from archgen.model.ros_distro import is_ros_1
 
 DefinitionUse = tuple[bool, str]
@@ -78,10 +77,8 @@ _INNER_TYPE_KEYS = ("request", "response", "feedback")
 
 def find_retyped_outputs(context: ChangeContext) -> Iterator[PartnerLoss]:
     """Find outputs that another partner reads and that have another conceptual type or message, or carry none any more."""
-    old_messages, new_messages = (
-        _messages_by_output(context.before, context.matched_ids),
-        _messages_by_output(context.after, MatchedIds()),
-    )
+    old_messages = _messages_by_output(context.before, context.matched_ids)
+    new_messages = _messages_by_output(context.after, MatchedIds())
     for output, readers in sorted(context.versions.connections_before.readers_by_output.items()):
         new_element = context.versions.elements_after.get(("output", output))
         if new_element is None:
@@ -102,10 +99,8 @@ def find_retyped_outputs(context: ChangeContext) -> Iterator[PartnerLoss]:
 
 def _medium_change(context: ChangeContext, output_id: str) -> tuple[list[int], str]:
     """Return the indices of changes that put an output onto another medium, and what it gives now; ([], "") if none did."""
-    old_port, new_port = (
-        context.before.outputs.get(context.old_id("output", output_id)),
-        context.after.outputs.get(output_id),
-    )
+    old_port = context.before.outputs.get(context.old_id("output", output_id))
+    new_port = context.after.outputs.get(output_id)
     if old_port is None or new_port is None or old_port.medium == new_port.medium:
         return [], ""
     indices = context.change_indices("output", output_id, "medium")
@@ -258,23 +253,13 @@ def _rebuild_reason(context: ChangeContext, message_name: str) -> str:
 
 def _compare_fields(old_definition: Interface, new_definition: Interface) -> tuple[set[str], set[str], set[str]]:
     """Return the names of the removed, added and changed fields."""
-    old_fields = {
-        (part_number, field.name): field for part_number, part in enumerate(old_definition.parts) for field in part
-    }
-    new_fields = {
-        (part_number, field.name): field for part_number, part in enumerate(new_definition.parts) for field in part
-    }
-    changed = {
-        name
-        for (part_number, name), field in old_fields.items()
-        if (part_number, name) in new_fields
-        and (field.type, field.array) != (new_fields[part_number, name].type, new_fields[part_number, name].array)
-    }
-    return (
-        {name for _, name in old_fields.keys() - new_fields.keys()},
-        {name for _, name in new_fields.keys() - old_fields.keys()},
-        changed,
+    old_fields, new_fields = (
+        {(number, field.name): (field.type, field.array) for number, part in enumerate(each.parts) for field in part}
+        for each in (old_definition, new_definition)
     )
+    retyped = {key for key in old_fields.keys() & new_fields.keys() if old_fields[key] != new_fields[key]}
+    removed, added = old_fields.keys() - new_fields.keys(), new_fields.keys() - old_fields.keys()
+    return {name for _, name in removed}, {name for _, name in added}, {name for _, name in retyped}
 
 
 _Lives = Mapping[str, ConceptualType] | Mapping[str, ComponentType]
@@ -294,29 +279,17 @@ def find_deprecated_types(context: ChangeContext) -> Iterator[PartnerLoss]:
             new = new_types.get(common_id)
             if new is None or (old.version is None and old.deprecated == new.deprecated):
                 continue
-            for words, key, category in _compare_lives(old, new):
+            for words, key, category in compare_lives(old, new):
                 if kind == "type":
                     message_users = message_users or MessageUsers(context)
                     partners = message_users.partners_using_type(common_id)
                 else:
                     partners = _list_instance_owners(context, name)
-                indices = context.change_indices(kind, common_id, key) or [
-                    index
-                    for index, change in context.find_changes(kind, common_id)
-                    if change.key and change.key.startswith(key.partition(".")[0])
-                ]
+                indices = context.change_indices(kind, common_id, key) or context.indices_below(
+                    kind, common_id, key.partition(".")[0]
+                )
                 reason_text = f"{words.replace('{}', tick_name(name), 1)}; {{}} it"
                 yield from context.losses_of_users(indices, partners, reason_text, "uses", category)
-
-
-def _compare_lives(
-    old: ConceptualType | ComponentType, new: ConceptualType | ComponentType
-) -> Iterator[tuple[str, str, BreakCategory]]:
-    if old.version is not None and old.version != new.version:
-        after = f"the version {tick_name(new.version)}" if new.version else "no version any more"
-        yield f"gives {{}} {after} instead of {tick_name(old.version)}", "version", "meaning"
-    for weakening in compare_deprecations(old.deprecated, new.deprecated):
-        yield weakening.words, weakening.key, weakening.category
 
 
 def _list_instance_owners(context: ChangeContext, type_name: str) -> list[str]:

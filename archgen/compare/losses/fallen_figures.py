@@ -121,8 +121,7 @@ def find_link_causes(
     for sent_topic in filter(None, map(context.after.topics.get, topics)):
         element_keys += [("type", element_id) for element_id in sent_topic.types]
         element_keys += [("message", element_id) for element_id in sent_topic.messages]
-    for kind, element_id in element_keys:
-        yield from (index for index, change in context.find_changes(kind, element_id) if causes.can_worsen(change))
+    yield from causes.list_worsening(element_keys)
 
 
 def find_fallen_limits(
@@ -142,7 +141,7 @@ def find_fallen_limits(
     losers: dict[tuple[LimitChange, str, SeparatedCauses], dict[str, list[str]]] = {}
     for limit in fallen:
         readers = {limit.port} if limit.key == "freshness" else readers_by_port[limit.port]
-        owned_readers = _own_readers(context, {limit.reader} & readers if limit.reader else readers)
+        owned_readers = context.group_readers({limit.reader} & readers if limit.reader else readers)
         found = _find_causes(context, limit, asked_before, causes, separator) if owned_readers else None
         if found and (limit.new_state == "broken" or not separator.lacks_new_figures_only(found, limit.after)):
             # Of one promise that is kept for none of its readers, one sentence.
@@ -158,16 +157,6 @@ def find_fallen_limits(
         found_hash = hash_fallen_limit(limit.port, limit.key, str(limit.limit), changes, context.versions)
         for loss in context.shared_losses(found.indices, owned_readers, reason, verb):
             yield replace(loss, fallen=(limit.port, limit.key), hash=found_hash)
-
-
-def _own_readers(context: ChangeContext, readers: Iterable[str]) -> dict[str, list[str]]:
-    """Return those of some inputs that needed what they read, by partner."""
-    owned: dict[str, list[str]] = defaultdict(list)
-    for reader in sorted(filter(context.needs_source, readers)):
-        partner = context.owner_before("input", reader)
-        if partner:
-            owned[partner].append(reader)
-    return owned
 
 
 def _find_causes(

@@ -39,10 +39,6 @@ class TimingCauses:
         """Return the common key of an activity of the first version."""
         return _activity_key(activity, self.context.before, self.context.matched_ids)
 
-    @property
-    def _element_tables(self) -> tuple[Mapping[ElementKey, ComparedElement], Mapping[ElementKey, ComparedElement]]:
-        return self.context.versions.elements_before, self.context.versions.elements_after
-
     @cached_property
     def old_activities(self) -> Mapping[ActivityKey, str]:
         """Return the activities of the first version by their common keys."""
@@ -89,7 +85,7 @@ class TimingCauses:
         """Yield the indices of changes of the components and nodes behind activities of the first version."""
         for activity in map(self.timing_pair.before.system.activities.__getitem__, activity_ids):
             component, node = self.old_activity_key(activity)
-            yield from self._worsening_indices([("component", component), ("node", node)])
+            yield from self.list_worsening([("component", component), ("node", node)])
 
     def _changes_cutting(self, activity: Activity) -> Iterator[int]:
         """Yield the indices of changes that removed an activity of the first version, or what it read."""
@@ -112,10 +108,8 @@ class TimingCauses:
         heavier_ids = []
         for activity_id in activity_ids:
             old_id = self.old_activity(activity_id)
-            new_share, old_share = (
-                _core_share(self.timing_pair.after, activity_id),
-                _core_share(self.timing_pair.before, old_id) if old_id else None,
-            )
+            new_share = _core_share(self.timing_pair.after, activity_id)
+            old_share = _core_share(self.timing_pair.before, old_id) if old_id else None
             if new_share and (old_share is None or old_share < new_share):
                 heavier_ids.append(activity_id)
         return heavier_ids
@@ -178,8 +172,8 @@ class TimingCauses:
         # (docs/decisions/0007-breaking-changes.md).
         if worsening in {Worsening.LESS, Worsening.MORE}:
             old_value, new_value = (
-                _numeric_value(elements.get((change.element_kind, change.element_id)), change.key)
-                for elements in self._element_tables
+                _numeric_value(element, change.key)
+                for element in self.context.versions.find_both(change.element_kind, change.element_id)
             )
             if old_value is None or new_value is None:
                 return True
@@ -205,7 +199,7 @@ class TimingCauses:
         )
         element_keys += [] if added_indices else [("node", name) for name in nodes]
         yield from added_indices
-        yield from self._worsening_indices(element_keys)
+        yield from self.list_worsening(element_keys)
 
     def _reading_changes(self, activity_id: str) -> Iterator[int]:
         """Yield the indices of changes of what an activity reads and writes."""
@@ -213,15 +207,14 @@ class TimingCauses:
         reading_component = self.context.after.components.get(self.activity_key(activity)[0])
         input_ids = [port.id for port in reading_component.inputs.values()] if reading_component else []
         element_keys = [("output", key) for key in activity.outputs]
-        yield from self._worsening_indices(
+        yield from self.list_worsening(
             [*element_keys, *((kind, key) for key in input_ids for kind in ("input", "connection"))]
         )
 
-    def _worsening_indices(self, element_keys: Iterable[ElementKey]) -> Iterator[int]:
+    def list_worsening(self, element_keys: Iterable[ElementKey]) -> Iterator[int]:
+        """Yield the indices of the changes of some elements that can worsen a figure."""
         for kind, element_id in element_keys:
-            yield from (
-                index for index, change in self.context.find_changes(kind, element_id) if self.can_worsen(change)
-            )
+            yield from self.context.list_indices(kind, element_id, self.can_worsen)
 
     def _upstream_activities(self, activity_id: str) -> Iterator[str]:
         """Yield what feeds an activity at another rate than before, and what takes more of its host."""

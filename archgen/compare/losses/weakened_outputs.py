@@ -188,10 +188,9 @@ def _find_causes(context: ChangeContext, old_output: str, new_output: str, keys:
     if old_output != new_output:
         return find_output_causes(context, old_output)
     component = new_output.rpartition(".")[0]
-    versions = context.versions
     nodes = {
         name
-        for elements in (versions.elements_before, versions.elements_after)
+        for elements in context.versions.elements
         for (kind, name), element in elements.items()
         if kind == "node" and component in element.component_refs
     }
@@ -221,10 +220,7 @@ def find_weakened_sizes(context: ChangeContext) -> Iterator[PartnerLoss]:
     ]
     users = MessageUsers(context) if changes else None
     for index, change in changes:
-        old_size, new_size = (
-            _read_size(elements.get(("type", change.element_id)))
-            for elements in (context.versions.elements_before, context.versions.elements_after)
-        )
+        old_size, new_size = map(_read_size, context.versions.find_both("type", change.element_id))
         if old_size is not None and (new_size is None or new_size > old_size):
             promise = (
                 f"{change.after} instead of {change.before}"

@@ -14,8 +14,9 @@ from archgen.compare.losses.lost_connections import find_output_causes
 from archgen.compare.matched_ids import MatchedIds
 from archgen.frozen import NamedTuple
 from archgen.model.architecture import Architecture
-from archgen.model.component import Output
+from archgen.model.component import ComponentType, Output
 from archgen.model.component_nesting import list_relied_outputs
+from archgen.model.message_types import ConceptualType
 from archgen.model.promise import Deprecation, Promise, format_range
 from archgen.model.review_settings import BreakCategory
 
@@ -28,6 +29,7 @@ class _Weakening(NamedTuple):
     category: BreakCategory = "promise"
 
 
+_Living = Output | ConceptualType | ComponentType
 _Reading = tuple[str, str]
 """An input and the leaf's output that it reads, by common ids."""
 
@@ -110,13 +112,8 @@ class _WordComparison:
             ("output", new_port.id, group),
             ("composed", shell, f"outputs.{name}:{group}"),
         ):
-            indices = [
-                index
-                for index, change in context.find_changes(kind, element)
-                if change.key and change.key.startswith(beginning)
-            ]
-            if indices:
-                return list(dict.fromkeys(indices))
+            if indices := context.indices_below(kind, element, beginning):
+                return indices
         return find_output_causes(context, leaf)
 
 
@@ -134,14 +131,18 @@ def _index_readings(architecture: Architecture, matched_ids: MatchedIds) -> dict
 
 def _find_weakenings(matched_ids: MatchedIds, old: Output, new: Output) -> Iterator[_Weakening]:
     yield from _compare_promises(matched_ids, old.promise or Promise(), new.promise or Promise())
+    yield from compare_lives(old, new)
+
+
+def compare_lives(old: _Living, new: _Living) -> Iterator[_Weakening]:
+    """Yield that something has another version, is deprecated now, or until an earlier day; `{}` stands for its name."""
     if old.version is not None and old.version != new.version:
         after = f"the version {tick_name(new.version)}" if new.version else "no version any more"
         yield _Weakening(f"gives {{}} {after} instead of {tick_name(old.version)}", "version", "meaning")
-    yield from compare_deprecations(old.deprecated, new.deprecated)
+    yield from _compare_deprecations(old.deprecated, new.deprecated)
 
 
-def compare_deprecations(old: Deprecation | None, new: Deprecation | None) -> Iterator[_Weakening]:
-    """Yield that something is deprecated now, or until an earlier day than before; `{}` stands for its name."""
+def _compare_deprecations(old: Deprecation | None, new: Deprecation | None) -> Iterator[_Weakening]:
     if new is None:
         return
     until = f"until {new.until}" if new.until else "without a day"

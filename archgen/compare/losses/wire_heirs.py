@@ -28,10 +28,8 @@ def find_wire_heirs(
     ]
     if not (new_outputs and lost_outputs):
         return {}
-    wires_before, wires_after = (
-        _collect_wires(architectures[0], matched_ids),
-        _collect_wires(architectures[1], MatchedIds()),
-    )
+    wires_before = _collect_wires(architectures[0], matched_ids)
+    wires_after = _collect_wires(architectures[1], MatchedIds())
     heirs = {}
     for name in lost_outputs:
         wire: Wire = wires_before.get(name, frozenset())

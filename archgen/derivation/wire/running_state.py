@@ -21,7 +21,7 @@ from archgen.model.deployment import Container
 from archgen.model.node import Clock, Endpoint, Evidence, Node, RunState, UseKind
 from archgen.model.parameter import format_parameter
 from archgen.model.parameter_values import EffectiveParameter, find_effective_parameters
-from archgen.model.ros_distro import is_ros_1
+from archgen.model.ros_distro import can_name_peers, is_ros_1
 from archgen.model.start_up import NO_START, LifecycleState
 
 DOMAIN_VARIABLE = "ROS_DOMAIN_ID"
@@ -40,10 +40,11 @@ _NO_DOMAIN = 2**64 - 1
 def find_environment(architecture: Architecture, node: Node | Container) -> Mapping[str, tuple[str, Span]]:
     """Return the variables with which the process of a node or container is started, each with its place.
 
-    Later ones win: the project's, the host's, its own. What a container loads has that of the container's process, of
+    Later ones win: what `ros.discovery` comes to, the project's, the host's, its own. What a container loads has that of the container's process, of
     which only imported hints tell more.
     """
-    variables = {each.name: (str(each.value), each.at) for each in architecture.ros_environment}
+    variables = {name: (text, architecture.distro_at) for name, text in list_discovery(architecture, node.host).items()}
+    variables |= {each.name: (str(each.value), each.at) for each in architecture.ros_environment}
     if host := architecture.hosts.get(node.host or ""):
         variables |= {name: (text, host.environment_places[name]) for name, text in host.environment.items()}
     container = node if isinstance(node, Container) else architecture.containers.get(node.container or "")
@@ -61,6 +62,23 @@ def find_environment(architecture: Architecture, node: Node | Container) -> Mapp
             name: (text, places.get(f"environment.{name}", node.at)) for name, text in node.start.environment.items()
         }
     return variables
+
+
+def list_discovery(architecture: Architecture, host_id: str | None) -> dict[str, str]:
+    """Return the variables by which nodes of a host find those of others: nothing where multicast does it."""
+    if architecture.ros_discovery != "peers" or not can_name_peers(architecture.distro):
+        return {}
+    hosts = architecture.hosts
+    peers = [other for link in architecture.links.values() if host_id in link.connects for other in link.connects]
+    # Where nobody says which network there is, all hosts are in it.
+    found = peers if any(len(link.connects) > 1 for link in architecture.links.values()) else list(hosts)
+    names = dict.fromkeys(hosts[each].network_name for each in found if each in hosts and each != host_id)
+    return {"ROS_AUTOMATIC_DISCOVERY_RANGE": "LOCALHOST", **({"ROS_STATIC_PEERS": ";".join(names)} if names else {})}
+
+
+def has_unknown_name(node: Node) -> bool:
+    """Whether an import found nobody who says what a node is called."""
+    return _read_hint(node, "name") == "unknown"
 
 
 def _read_hint(element: Node | Container, key: str) -> object:
@@ -238,7 +256,7 @@ def find_parameters(architecture: Architecture, node: Node, *names: str) -> Mapp
 
 
 def complete_states(
-    architecture: Architecture, endpoints: Iterable[Endpoint], memory: DerivedParts | None = None
+    architecture: Architecture, endpoints: Iterable[Endpoint], memory: DerivedParts
 ) -> tuple[Endpoint, ...]:
     """Return the ends of all nodes with their domain, clock and quality of service, and whether they run.
 
@@ -254,10 +272,7 @@ def complete_states(
             completed += own_endpoints
             continue
         complete = partial(_complete_endpoint, node, state)
-        if memory is None:
-            completed += map(complete, own_endpoints)
-        else:
-            completed += memory.complete_endpoints(node, own_endpoints, state, complete)
+        completed += memory.complete_endpoints(node, own_endpoints, state, complete)
     return tuple(completed)
 
 

@@ -12,7 +12,9 @@ from collections.abc import Callable, Mapping
 from archgen.emit.docx.contents_lists import write_contents
 from archgen.emit.docx.document_text import format_document
 from archgen.emit.docx.docx_file import save_package
+from archgen.emit.docx.embedded_font import embed_code_font
 from archgen.emit.docx.page_flow import assign_sheets, estimate_pages, fill_pages
+from archgen.emit.docx.paper_sheets import narrow_margins
 from archgen.emit.docx.report_template import (
     clean_settings,
     create_writer,
@@ -27,7 +29,6 @@ from archgen.emit.docx.template_placeholders import (
     find_placeholders,
     place_contents,
 )
-from archgen.emit.docx.template_repair import TemplateError
 from archgen.emit.docx.title_page import (
     list_placeholder_values,
     write_core_properties,
@@ -35,6 +36,7 @@ from archgen.emit.docx.title_page import (
     write_title_page,
 )
 from archgen.emit.picture import Picture
+from archgen.emit.template_package import TemplateError
 from archgen.frozen import replace
 from archgen.views.shapes import Outline
 
@@ -61,6 +63,8 @@ def write(
     writer = create_writer(report_template, pictures, chapter_files, list_anchors(outline), language)
     if not outline.has_large_paper:
         writer.paper = replace(writer.paper, large=())
+    if outline.has_narrow_margins and template is None:
+        writer.paper = narrow_margins(writer.paper)
     if template is not None:
         warn_of_template(writer, unknown_names)
     title_page = tuple(write_title_page(writer, outline, cover_names))
@@ -84,6 +88,7 @@ def write(
         report_template = place_contents(report_template, contents_mark, "".join(piece.xml for piece in contents))
     document = report_template.document
     clean_settings(document)
+    embed_code_font(document, writer.styles)
     write_core_properties(document, report_template.package, outline)
     replace_document_text(document, format_document(report_template, writer, title_page, flow))
     return save_package(report_template.package), tuple(writer.warnings)

@@ -5,9 +5,10 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 
+from archgen.emit.docx.bars import measure_bar
 from archgen.emit.docx.docx_writer import ColumnMeasures, DocxWriter
 from archgen.emit.docx.paper_sheets import PaperSheet
-from archgen.emit.docx.text_metrics import join_hard_blanks, measure_code, measure_words, split_name
+from archgen.emit.text_metrics import join_hard_blanks, measure_code, measure_words, split_name
 from archgen.frozen import dataclass
 from archgen.views.shapes import Column, Inlines, Table
 
@@ -16,6 +17,7 @@ CELL_MARGINS = 10.0
 _MAX_WORD_SHARE = 0.4
 """Share of the table that one unbroken word may claim; a longer one (a topic's name) is broken."""
 _MAX_SMALL_WORD_SHARE = 0.25
+_MAX_DENSE_NAME_SHARE = 0.2
 _MAX_NAME_SHARE = 0.3
 """Share of the upright page that a name may claim before it is broken behind its underscores, points and slashes."""
 
@@ -39,11 +41,13 @@ class TableContent:
     columns: Sequence[Column]
     rows: Sequence[Sequence[Inlines]]
     table_id: int | None = None
+    max_name_share: float = _MAX_NAME_SHARE
 
     @classmethod
     def from_table(cls, shape: Table) -> TableContent:
         """Return the content of a table of the outline, which lives as long as the report is written."""
-        return cls(shape.columns, shape.rows, id(shape))
+        max_name_share = _MAX_DENSE_NAME_SHARE if shape.dense else _MAX_NAME_SHARE
+        return cls(shape.columns, shape.rows, id(shape), max_name_share)
 
 
 def choose_table_sheet(writer: DocxWriter, shape: Table) -> tuple[PaperSheet | None, TableStyles]:
@@ -56,7 +60,7 @@ def choose_table_sheet(writer: DocxWriter, shape: Table) -> tuple[PaperSheet | N
     if shape.wide:
         fits = _fits_sheet(writer, content, wide, USUAL_STYLES, _MAX_WORD_SHARE)
         return wide, USUAL_STYLES if fits else SMALL_STYLES
-    if _fits_sheet(writer, content, base, USUAL_STYLES, _MAX_WORD_SHARE):
+    if not shape.dense and _fits_sheet(writer, content, base, USUAL_STYLES, _MAX_WORD_SHARE):
         return None, USUAL_STYLES
     fits = _fits_sheet(writer, content, base, SMALL_STYLES, _MAX_SMALL_WORD_SHARE)
     return (None if fits else wide), SMALL_STYLES
@@ -120,11 +124,15 @@ def _measure_cells(writer: DocxWriter, content: TableContent, styles: TableStyle
         for column in content.columns
     ]
     parts = list(words)
-    max_name = writer.paper.base.text_width * _MAX_NAME_SHARE
+    max_name = writer.paper.base.text_width * content.max_name_share
     for row in content.rows:
         for index, cell in enumerate(row[: len(words)]):
             line_width = 0.0
             for item in cell:
+                if bar := measure_bar(item):
+                    words[index] = max(words[index], bar)
+                    parts[index] = max(parts[index], bar)
+                    line_width += bar
                 scale = text.size * text.factor
                 widths = (
                     [measure_code(word) * text.size for word in item.text.split()]

@@ -20,7 +20,7 @@ _MAX_LEVEL = 3
 _MAX_LINES = 100
 """From this many lines on the contents have the first two levels alone."""
 _MAX_TABLES = 60
-_MIN_COLUMN_LINES = 60
+_MIN_COLUMN_LINES = 45
 """From this many lines on, more than a page, the contents stand in two columns."""
 _MIN_COLUMN_WIDTH = 200.0
 """Points that a column must have for a heading to fit a line or two."""

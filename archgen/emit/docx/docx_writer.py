@@ -16,7 +16,8 @@ from archgen.emit.docx.docx_file import SVG_TYPE
 from archgen.emit.docx.list_numbering import ListNumbering
 from archgen.emit.docx.paper_sheets import PaperSet
 from archgen.emit.docx.style_table import StyleTable
-from archgen.emit.docx.word_xml import clean_word_text, name_bookmark, name_label_bookmark
+from archgen.emit.docx.word_xml import name_bookmark, name_label_bookmark
+from archgen.emit.office_package import replace_forbidden
 from archgen.emit.picture import Picture
 from archgen.frozen import dataclass, field
 
@@ -123,7 +124,7 @@ class DocxWriter:
 
     def warn(self, text: str) -> None:
         """Say something about the report to who writes it, once."""
-        text = clean_word_text(text)
+        text = replace_forbidden(text)
         if text not in self.warnings:
             self.warnings.append(text)
 

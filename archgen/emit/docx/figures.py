@@ -22,6 +22,7 @@ from archgen.emit.docx.word_xml import clean_line, format_paragraph, format_run
 from archgen.frozen import dataclass, replace
 from archgen.views.shapes import Figure
 
+_MM_PER_POINT = 25.4 / 72
 _SCREEN_DPI = 96.0
 _POINTS_PER_INCH = 72.0
 _MIN_DPI, _MAX_DPI = 30.0, 2400.0
@@ -132,17 +133,13 @@ def _read_length(text: str) -> float:
     return float(match[1]) * _UNIT_POINTS[match[2].lower()] if match else 0.0
 
 
-_TYPE_SIZE = 9.0
-"""Type size in points of the pictures that archgen draws."""
-_LEGIBLE_SIZE = 5.4
-_LEGIBLE_SIZE_TURNED = 5.5
-"""Below these sizes the next larger sheet is tried; turning a printed page is a price, finding A3 paper a higher one."""
+_TYPE_SIZE = 8.0
+"""Type size in points of the smallest words in the pictures that archgen draws."""
 _LEAST_SIZE = 6.5
-"""A picture that would leave the foot of a page empty is drawn smaller, down to this size of its type."""
+"""The smallest type on paper: below it the next larger sheet is tried, and what is still smaller is left out."""
+_LEAST_SCALE = _LEAST_SIZE / _TYPE_SIZE
 _CAPTION_HEIGHT = 60.0
 """Points kept free below a picture for its caption."""
-_MIN_GAIN = 1.05
-"""A sheet on which a picture is hardly larger is no gain."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -156,14 +153,22 @@ class PictureRun:
 def write_figure(writer: DocxWriter, shape: Figure) -> Iterator[FlowPiece]:
     """Write a drawn picture with its caption below, or a sentence where there is no picture."""
     picture = writer.pictures.get(shape.graph)
-    if picture is None or not (picture.png or picture.svg_outlines):
-        if writer.pictures:  # where there is none at all, who draws has said why, once
+    sheet, scale = choose_sheet(writer, picture.width, picture.height) if picture else (None, 0.0)
+    if picture is None or not (picture.png or picture.svg_outlines) or not scale:
+        is_drawn = picture is not None and (picture.png or picture.svg_outlines)
+        if writer.pictures and not is_drawn:  # where there is none at all, who draws has said why, once
             reason = (picture.warning if picture else None) or "it was not drawn"
             writer.warn(f"the report lacks the picture `{shape.graph}`: {reason}")
-        yield _write_note(writer, f"This picture could not be drawn. {shape.alt}".strip(), None, keep_next=True)
+        lack = (
+            "This picture is too large to be read on paper; the site has it"
+            if is_drawn
+            else "This picture could not be drawn"
+        )
+        yield _write_note(writer, f"{lack}. {shape.alt}".strip(), None, keep_next=True)
         yield write_caption(writer, shape.anchor, shape.caption, None)
         return
-    sheet, scale = choose_sheet(writer, picture.width, picture.height)
+    if shape.max_height and sheet is None:
+        scale = max(min(scale, shape.max_height / _MM_PER_POINT / picture.height), min(scale, _LEAST_SCALE))
     width, height = picture.width * scale, picture.height * scale
     png = picture.png or _draw_stand_in(picture.width, picture.height)
     raster = writer.relate_image(f"graph:{shape.graph}", "png", png)
@@ -176,14 +181,14 @@ def write_figure(writer: DocxWriter, shape: Figure) -> Iterator[FlowPiece]:
         piece = write_picture_paragraph(writer, PictureRun(run, size[1]), sheet, keep_next=shape.numbered)
         return replace(piece, picture=scalable_picture)
 
-    least = _LEAST_SIZE / (_TYPE_SIZE * scale)
+    least = _LEAST_SCALE / scale
     scalable_picture = ScalablePicture(height, least, draw_piece) if sheet is None and least < 1 else None
     yield draw_piece(1.0)
     if shape.numbered:
         yield write_caption(
             writer,
             shape.anchor,
-            f"{shape.caption} (reduced to {scale:.0%})" if scale * _TYPE_SIZE < _LEGIBLE_SIZE else shape.caption,
+            shape.caption,
             sheet,
         )
     # Whoever reads the page must know what the picture lacks, not only whoever wrote it.
@@ -194,19 +199,13 @@ def write_figure(writer: DocxWriter, shape: Figure) -> Iterator[FlowPiece]:
 def choose_sheet(writer: DocxWriter, width: float, height: float) -> tuple[PaperSheet | None, float]:
     """Return the sheet for a picture (None for the usual one) and its scale.
 
-    It is the usual one while its type can be read there, else a turned one, else the large one on which it is largest (few
-    printers have such paper, so less must do on the turned one).
+    It is the usual one while its type can be read there, else a turned one, else the large one on which it is largest. Where
+    it can be read on none, the scale is 0.
     """
     paper = writer.paper
-    sheet, scale = None, _scale_to_sheet(paper.base, width, height)
-    for legible_size, others in ((_LEGIBLE_SIZE, (paper.wide,)), (_LEGIBLE_SIZE_TURNED, paper.large)):
-        if scale * _TYPE_SIZE >= legible_size:
-            break
-        for other in others:
-            other_scale = _scale_to_sheet(other, width, height)
-            if other_scale > scale * _MIN_GAIN:
-                sheet, scale = other, other_scale
-    return sheet, scale
+    sheets: tuple[PaperSheet | None, ...] = (None, paper.wide, *paper.large)
+    scales = ((each, _scale_to_sheet(each or paper.base, width, height)) for each in sheets)
+    return next((found for found in scales if found[1] >= _LEAST_SCALE), (None, 0.0))
 
 
 def write_picture_paragraph(

@@ -16,10 +16,11 @@ from docx.shared import Length, Twips
 from lxml import etree
 
 from archgen.emit.docx.word_xml import points_to_twips
-from archgen.frozen import dataclass
+from archgen.frozen import dataclass, replace
 
 _A4 = (595.3, 841.9)
 _MARGIN = 70.85  # 25 mm
+_NARROW_MARGIN, _NARROW_HEAD = 42.5, 48.2  # 15 and 17 mm
 _HEADER_DISTANCE = 34
 _COLUMN_GAP = 20.0
 _MAX_SIDE = 1584.0
@@ -112,6 +113,14 @@ def measure_paper(section: etree._Element | None, relation_ids: Collection[str],
     short, long = sorted((base.width, base.height))
     upright = PaperSheet(long, 2 * short, base.top, base.right, base.bottom, base.left)
     return PaperSet(base, wide, (upright, _turn_sheet(upright)) if 2 * short <= _MAX_SIDE else (), section, part)
+
+
+def narrow_margins(paper: PaperSet) -> PaperSet:
+    """Return the sheets of a report with less space at the sides and at head and foot."""
+    section = copy.deepcopy(paper.section)
+    base = replace(paper.base, left=_NARROW_MARGIN, right=_NARROW_MARGIN, top=_NARROW_HEAD, bottom=_NARROW_HEAD)
+    _write_sheet(section, base, paper.part)
+    return replace(paper, base=base, wide=_turn_sheet(base), section=section)
 
 
 def _read_sheet(section: etree._Element) -> PaperSheet | None:

@@ -29,8 +29,9 @@ from archgen.emit.docx.docx_writer import DocxWriter
 from archgen.emit.docx.list_numbering import prepare_numbering
 from archgen.emit.docx.paper_sheets import measure_paper
 from archgen.emit.docx.style_table import match_styles
-from archgen.emit.docx.template_repair import TemplateError, repair_package, unpack_template
+from archgen.emit.docx.template_repair import repair_package
 from archgen.emit.picture import Picture
+from archgen.emit.template_package import TemplateError, unpack_template
 from archgen.frozen import dataclass
 
 _REPORT_MARK = "{{report}}"

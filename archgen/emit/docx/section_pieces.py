@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import itertools
+import math
 from collections.abc import Iterator, Sequence
 
 from archgen.emit.docx.column_widths import choose_table_sheet
@@ -50,7 +51,17 @@ def _write_all(writer: DocxWriter, outline: Outline) -> Iterator[FlowPiece]:
         items = tuple(_iter_items(section, 1, appendix=section.appendix, new_page=new_page))
         starts = [place for place, item in enumerate(items) if item.block is None and item.level <= _SCOPE_LEVEL]
         for start, end in zip(starts, [*starts[1:], len(items)], strict=True):
-            yield from _write_scope(writer, items[start:end])
+            pieces = list(_write_scope(writer, items[start:end]))
+            yield from _keep_whole(writer, pieces) if items[start].level == _SCOPE_LEVEL else pieces
+
+
+def _keep_whole(writer: DocxWriter, pieces: Sequence[FlowPiece]) -> Iterator[FlowPiece]:
+    """Yield the pieces of a component, or of what else has a section of its own, so that a page has all of it if one can."""
+    height = math.fsum(piece.height for piece in pieces)
+    fits = height <= writer.paper.base.text_height and all(piece.sheet is None for piece in pieces)
+    for piece, following in itertools.pairwise((*pieces, None)):
+        if piece is not None:
+            yield keep_with_next(piece) if fits and following is not None else piece
 
 
 def _drop_last_spacers(pieces: Iterator[FlowPiece]) -> Iterator[FlowPiece]:
@@ -81,7 +92,7 @@ def _write_scope(writer: DocxWriter, items: Sequence[OutlineItem]) -> Iterator[F
             place = Text("The picture", ref=item.block.anchor, is_number=True)
             inlines = (place, Text(" stands on the wide page that follows: "), Text(item.block.caption))
             yield write_paragraph(writer, Paragraph(inlines))
-        elif _stays_with_next(writer, items[index : index + 3]):
+        elif _stays_with_next(writer, items[index : index + 3]) or _opens_section(items, index):
             (piece,) = _write_item(writer, item)
             yield keep_with_next(piece)
         else:
@@ -95,10 +106,25 @@ def _stays_with_next(writer: DocxWriter, items: Sequence[OutlineItem]) -> bool:
 
     Such a paragraph stays where the figure or table turns the page: else it might be alone on its own.
     """
-    if _leads_to_block(items[:2]):
+    if _leads_to_block(items[:2]) or _is_title(items):
         return True
     is_lead = isinstance(items[0].block, Paragraph) and _leads_to_block(items[1:])
     return is_lead and items[2].block is not None and _needs_sheet(writer, items[2].block)
+
+
+def _opens_section(items: Sequence[OutlineItem], index: int) -> bool:
+    """Tell whether an item is the paragraph between a heading and a title: both would stand alone at the end of a page."""
+    is_first = index > 0 and items[index - 1].block is None and isinstance(items[index].block, Paragraph)
+    return is_first and _is_title(items[index + 1 : index + 3])
+
+
+def _is_title(items: Sequence[OutlineItem]) -> bool:
+    """Tell whether the first of some items is the paragraph over a table without a caption, or strong words over anything."""
+    if len(items) < 2 or not isinstance(items[0].block, Paragraph):  # noqa: PLR2004 - both are there
+        return False
+    is_title = all(run.strong for run in items[0].block.inlines)
+    block = items[1].block
+    return block is not None and (is_title or (isinstance(block, Table) and not block.numbered))
 
 
 def _leads_to_block(items: Sequence[OutlineItem]) -> bool:

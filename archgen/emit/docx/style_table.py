@@ -17,8 +17,8 @@ from collections.abc import Sequence
 from docx.oxml.ns import qn
 from lxml import etree
 
-from archgen.emit.docx.text_metrics import BOLD_FACTOR, TextFace, find_font_factor
 from archgen.emit.docx.word_xml import escape_text
+from archgen.emit.text_metrics import BOLD_FACTOR, TextFace, find_font_factor
 from archgen.frozen import dataclass, field
 
 HEADING_LEVELS = 9
@@ -77,6 +77,11 @@ class StyleTable:
         if part not in self.faces:
             self.faces[part] = read_face(self.root, self.list_bases(self.ids[part]))
         return self.faces[part]
+
+    def find_font(self, part: str) -> str:
+        """Return the font that the style for a part is set in; empty where it names none."""
+        runs = [item for style in self.list_bases(self.ids[part]) if (item := style.find(qn("w:rPr"))) is not None]
+        return _read_text(runs, "rFonts", "ascii")
 
     def find_style(self, style_id: str) -> etree._Element | None:
         """Return the style with an id."""

@@ -17,9 +17,9 @@ from archgen.emit.docx.column_widths import (
 from archgen.emit.docx.docx_writer import DocxWriter
 from archgen.emit.docx.page_flow import FlowPiece
 from archgen.emit.docx.paper_sheets import PaperSheet
-from archgen.emit.docx.text_metrics import TextFace, measure_word
-from archgen.emit.docx.text_pieces import MUTED_COLOUR, RunSetting, format_runs, join_text
+from archgen.emit.docx.text_pieces import MUTED_SETTING, RunSetting, format_runs, join_text
 from archgen.emit.docx.word_xml import escape_text, format_paragraph, format_run, points_to_twips
+from archgen.emit.text_metrics import TextFace, measure_word
 from archgen.frozen import dataclass, replace
 from archgen.views.shapes import Column, Facts, Inlines, Table
 
@@ -31,6 +31,11 @@ _FACTS_HEIGHT = 300.0
 """The same for a table of facts, which has no header row to repeat: its rows are read together."""
 _LINE_HEIGHT = 0.25
 """Points that the line between two rows takes; measured with LibreOffice."""
+_BOLD = "<w:b/><w:bCs/>"
+_LARGE = f'{_BOLD}<w:color w:val="0B5A9C"/><w:sz w:val="32"/><w:szCs w:val="32"/>'
+"""The figures of a table without a header: what stands below them says what they are."""
+_MAX_BLOCK_SHARE = 0.6
+"""Share of a page that a small table takes at most to stay on one."""
 _KEEP_WHOLE = "<w:cantSplit/>"
 _MAX_WHOLE_SHARE = 0.8
 """Share of a page above which a row may be split: it would not fit a page with its header."""
@@ -57,6 +62,8 @@ class TableFrame:
     sheet: PaperSheet | None = None
     style: str = "Report Table"
     styles: TableStyles = USUAL_STYLES
+    is_whole: bool = False
+    """Stays on one page where it takes no more than most of one."""
 
 
 def _write_table_rows(
@@ -69,7 +76,9 @@ def _write_table_rows(
     styles = writer.styles
     heights = [_measure_row(row, frame.widths, styles.find_face(frame.styles.text)) for row in body]
     header_height = _measure_row(header, frame.widths, styles.find_face(frame.styles.heading)) if header else 0.0
-    short = header_height + math.fsum(heights) <= (_SHORT_HEIGHT if header else _FACTS_HEIGHT)
+    page = (frame.sheet or writer.paper.base).text_height
+    limit = page * _MAX_BLOCK_SHARE if frame.is_whole else _SHORT_HEIGHT if header else _FACTS_HEIGHT
+    short = header_height + math.fsum(heights) <= limit
     # A template's plain grid does not tell its first row from the others.
     shade = _HEADER_SHADE if styles.find_style_id(frame.style) == styles.find_style_id("Table Grid") else ""
     starts = [f'<w:tc><w:tcPr><w:tcW w:w="{points_to_twips(width)}" w:type="dxa"/>' for width in frame.widths]
@@ -79,7 +88,7 @@ def _write_table_rows(
         header_starts = [start + shade for start in starts]
         rows.append(_format_row(header_starts, header, heading_style, _KEEP_WHOLE + "<w:tblHeader/>"))
     text_style = f'<w:pStyle w:val="{styles.find_style_id(frame.styles.text)}"/>'
-    max_height = (frame.sheet or writer.paper.base).text_height * _MAX_WHOLE_SHARE
+    max_height = page * _MAX_WHOLE_SHARE
     last = len(body) - 1
     # The last row is not alone on a page, unless the two would fill one.
     kept_rows = {0, last - 1} if math.fsum(heights[-2:]) < max_height else {0}
@@ -182,7 +191,12 @@ def write_table(writer: DocxWriter, shape: Table) -> Iterator[FlowPiece]:
         WordCell(format_run(column.title), column.title, align)
         for column, align in zip(shape.columns, aligns, strict=True)
     ]
-    yield _write_table_rows(writer, header, body, TableFrame(widths, shape.caption, sheet, styles=styles))
+    has_header = any(column.title for column in shape.columns)
+    if not has_header:
+        body = [[replace(cell, runs=cell.runs.replace(_BOLD, _LARGE)) for cell in row] for row in body]
+    style = "Report Table" if has_header else "Report Facts"
+    frame = TableFrame(widths, shape.caption, sheet, style, styles, is_whole=not shape.numbered)
+    yield _write_table_rows(writer, header if has_header else [], body, frame)
 
 
 def write_facts(writer: DocxWriter, shape: Facts) -> Iterator[FlowPiece]:
@@ -197,7 +211,7 @@ def write_facts(writer: DocxWriter, shape: Facts) -> Iterator[FlowPiece]:
     row_anchors = (*shape.row_anchors, *(None for _ in shape.rows))
     body = [
         [
-            WordCell(writer.format_bookmark(anchor) + format_run(name, MUTED_COLOUR), name),
+            WordCell(writer.format_bookmark(anchor) + format_run(name, MUTED_SETTING), name),
             WordCell(format_runs(writer, value, setting), join_text(value)),
         ]
         for (name, value), anchor in zip(shape.rows, row_anchors, strict=False)

@@ -12,7 +12,8 @@ from docx.oxml.parser import parse_xml
 from lxml import etree
 
 from archgen.emit.docx.report_template import ReportTemplate
-from archgen.emit.docx.word_xml import NAMESPACES, clean_word_text
+from archgen.emit.docx.word_xml import NAMESPACES
+from archgen.emit.office_package import replace_forbidden
 from archgen.frozen import replace
 
 _PLACEHOLDER = re.compile(r"\{\{(?:\s++(?!\}\}))?+([^{}]{1,80}?)(?:(?<!\s)\s++)?+\}\}")
@@ -96,7 +97,7 @@ def _fill_paragraph(paragraph: etree._Element, values: Mapping[str, str]) -> lis
 
 
 def _replace_names(text: str, values: Mapping[str, str]) -> str:
-    return _PLACEHOLDER.sub(lambda match: clean_word_text(values.get(match[1].casefold(), "")), text)
+    return _PLACEHOLDER.sub(lambda match: replace_forbidden(values.get(match[1].casefold(), "")), text)
 
 
 def _write_text(item: etree._Element, text: str) -> None:

@@ -5,78 +5,14 @@ python-docx refuses .dotx files, and raises KeyError for a part without a conten
 
 from __future__ import annotations
 
-import io
 import posixpath
-import zipfile
-import zlib
 from urllib.parse import unquote
 
 from docx.opc.constants import CONTENT_TYPE, NAMESPACE, RELATIONSHIP_TYPE
 from docx.oxml.ns import qn
 from lxml import etree
 
-_MAX_PARTS = 4_000
-_MAX_BYTES = 200_000_000
-# A compound file: what Word writes for a document with a password, and what every .doc is.
-_OLE_SIGNATURE = b"\xd0\xcf\x11\xe0\xa1\xb1\x1a\xe1"
-_ZIP_ERRORS = (zipfile.BadZipFile, zlib.error, EOFError, NotImplementedError, RuntimeError, OSError, ValueError)
-
-
-class TemplateError(ValueError):
-    """The file given as a template cannot be used. The message is for the user."""
-
-
-def unpack_template(data: bytes) -> dict[str, bytes]:
-    """Return the parts of a Word file by name, without a slash in front. Raise TemplateError if it is too large or no zip."""
-    if data.startswith(_OLE_SIGNATURE):
-        message = "the template is protected with a password or is an old .doc file: save it as a Word document (.docx)"
-        raise TemplateError(message)
-    try:
-        with zipfile.ZipFile(io.BytesIO(data)) as archive:
-            return _read_bounded_parts(archive)
-    except TemplateError:
-        raise
-    except _ZIP_ERRORS as error:
-        message = f"the template is no Word file: it cannot be opened as a package ({error})"
-        raise TemplateError(message) from None
-
-
-def _parse_part(data: bytes, name: str) -> etree._Element:
-    """Return the root of a part: no document type, no entity, nothing fetched. Raise TemplateError if it is not well-formed."""
-    parser = etree.XMLParser(
-        resolve_entities=False, no_network=True, load_dtd=False, huge_tree=False, remove_comments=True, remove_pis=True
-    )
-    try:
-        root = etree.fromstring(data, parser)
-    except (etree.XMLSyntaxError, ValueError) as error:
-        message = f"the template is damaged: its part `{name}` is not well-formed XML ({error})"
-        raise TemplateError(message) from None
-    # python-docx leaves entities unresolved too, but a part that needs them would lose its text without a word.
-    if root.getroottree().docinfo.internalDTD is not None:
-        message = f"the template is refused: its part `{name}` declares a document type, which Word never writes"
-        raise TemplateError(message)
-    return root
-
-
-def _read_bounded_parts(archive: zipfile.ZipFile) -> dict[str, bytes]:
-    """Return all parts, but never more than a Word file can sensibly hold."""
-    entries = [entry for entry in archive.infolist() if not entry.is_dir()]
-    if len(entries) > _MAX_PARTS:
-        message = f"the template is refused: it has {len(entries)} parts, more than {_MAX_PARTS}"
-        raise TemplateError(message)
-    parts: dict[str, bytes] = {}
-    remaining = _MAX_BYTES
-    for entry in entries:
-        # The bytes are counted as they are unpacked: sizes that stand in the zip may lie, whatever their ratio.
-        with archive.open(entry) as stream:
-            content = stream.read(remaining + 1)
-        remaining -= len(content)
-        if remaining < 0:
-            message = f"the template is refused: unpacked it is larger than {_MAX_BYTES // 1_000_000} MB"
-            raise TemplateError(message)
-        parts[entry.filename.lstrip("/")] = content
-    return parts
-
+from archgen.emit.template_package import TemplateError, parse_part, read_content_types, zip_parts
 
 _PACKAGE_RELATIONS = "_rels/.rels"
 _ROOT_TAG = f"{{{NAMESPACE.OPC_RELATIONSHIPS}}}Relationships"
@@ -117,7 +53,7 @@ def _repair_relations(parts: dict[str, bytes], types: dict[str, str], main: str)
 
 def _parse_relations(parts: dict[str, bytes], name: str) -> etree._Element:
     """Return the root of a part of relationships, with each id once; an empty one if the part holds something else."""
-    root = _parse_part(parts[name], name)
+    root = parse_part(parts[name], name)
     if root.tag != _ROOT_TAG:
         return etree.fromstring(f'<Relationships xmlns="{NAMESPACE.OPC_RELATIONSHIPS}"/>')
     ids = {""}
@@ -176,7 +112,7 @@ def _repair_other_relations(root: etree._Element, parts: dict[str, bytes], sourc
 
 def _fits_kind(parts: dict[str, bytes], name: str, kind: str) -> bool:
     """Tell whether a part that should be styles, numbering or settings is that."""
-    return kind not in _SINGLE_KINDS or _parse_part(parts[name], name).tag == qn(f"w:{kind}")
+    return kind not in _SINGLE_KINDS or parse_part(parts[name], name).tag == qn(f"w:{kind}")
 
 
 def _is_external(relation: etree._Element) -> bool:
@@ -195,18 +131,15 @@ def _resolve_target(folder: str, target: str) -> str:
     return posixpath.normpath(joined).lstrip("/")
 
 
-_CONTENT_TYPES = "[Content_Types].xml"
-_TYPES = f"{{{NAMESPACE.OPC_CONTENT_TYPES}}}"
 _TEMPLATE_MAIN = "application/vnd.openxmlformats-officedocument.wordprocessingml.template.main+xml"
 _STRICT_DOCUMENT = "{http://purl.oclc.org/ooxml/wordprocessingml/main}document"
-_MACRO_SIGNS = ("macroEnabled", "vbaProject", "vbaData", "activeX")
 _PARSED_TYPES = {*_KIND_TYPES.values(), CONTENT_TYPE.WML_COMMENTS}
 """Content types that python-docx parses as soon as it opens a file, beside the main part."""
 
 
 def repair_package(parts: dict[str, bytes]) -> bytes:
     """Return a template as a package that python-docx opens. Raise TemplateError if it is no Word document."""
-    types = _read_content_types(parts)
+    types = read_content_types(parts)
     main = _find_main_part(parts, types)
     _check_document(parts, main)
     # A .dotx differs from a .docx in this alone.
@@ -214,30 +147,8 @@ def repair_package(parts: dict[str, bytes]) -> bytes:
     _repair_relations(parts, types, main)
     for name, content_type in types.items():
         if content_type in _PARSED_TYPES:
-            _parse_part(parts[name], name)
-    return _zip_parts(parts, types)
-
-
-def _read_content_types(parts: dict[str, bytes]) -> dict[str, str]:
-    """Take the content types out of the parts; return the type of each part by its name. Refuse macros."""
-    listing = parts.pop(_CONTENT_TYPES, None)
-    if listing is None:
-        message = f"the template is no Word file: it is a zip file without `{_CONTENT_TYPES}`"
-        raise TemplateError(message)
-    root = _parse_part(listing, _CONTENT_TYPES)
-    if any(sign in item.get("ContentType", "") for item in root for sign in _MACRO_SIGNS):
-        message = "the template is refused: it holds macros or controls; save it as .docx or .dotx without them"
-        raise TemplateError(message)
-    endings = {
-        item.get("Extension", "").lower(): item.get("ContentType", "") for item in root.iterfind(f"{_TYPES}Default")
-    }
-    overrides = {
-        item.get("PartName", "").lstrip("/"): item.get("ContentType", "") for item in root.iterfind(f"{_TYPES}Override")
-    }
-    return {
-        name: overrides.get(name) or endings.get(name.rpartition(".")[2].lower()) or "application/octet-stream"
-        for name in parts
-    }
+            parse_part(parts[name], name)
+    return zip_parts(parts, types)
 
 
 def _find_main_part(parts: dict[str, bytes], types: dict[str, str]) -> str:
@@ -250,23 +161,10 @@ def _find_main_part(parts: dict[str, bytes], types: dict[str, str]) -> str:
 
 
 def _check_document(parts: dict[str, bytes], main: str) -> None:
-    root = _parse_part(parts[main], main)
+    root = parse_part(parts[main], main)
     if root.tag == _STRICT_DOCUMENT:
         message = 'the template is a "Strict Open XML Document": save it as an ordinary Word document (.docx)'
         raise TemplateError(message)
     if root.tag != qn("w:document") or root.find(qn("w:body")) is None:
         message = f"the template is no Word file: its part `{main}` holds no document"
         raise TemplateError(message)
-
-
-def _zip_parts(parts: dict[str, bytes], types: dict[str, str]) -> bytes:
-    """Return parts as a zip without compression, with a content type for each of them."""
-    # By name for all: python-docx asks for the type of each part, and raises KeyError where an ending has none.
-    root = etree.fromstring(f'<Types xmlns="{NAMESPACE.OPC_CONTENT_TYPES}"/>')
-    for name, content_type in types.items():
-        etree.SubElement(root, f"{_TYPES}Override", PartName=f"/{name}", ContentType=content_type)
-    target = io.BytesIO()
-    with zipfile.ZipFile(target, "w") as archive:
-        for name, content in {_CONTENT_TYPES: etree.tostring(root), **parts}.items():
-            archive.writestr(name, content)
-    return target.getvalue()

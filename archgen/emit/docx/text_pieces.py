@@ -6,12 +6,13 @@ import math
 import re
 from collections.abc import Iterable, Iterator, Sequence
 
+from archgen.emit.docx.bars import format_bar
 from archgen.emit.docx.docx_writer import ContentsEntry, DocxWriter
 from archgen.emit.docx.list_numbering import format_heading_number
 from archgen.emit.docx.page_flow import FlowPiece
 from archgen.emit.docx.style_table import HEADING_LEVELS
-from archgen.emit.docx.text_metrics import CODE_SCALE, measure_code, measure_word, split_name
 from archgen.emit.docx.word_xml import (
+    escape_text,
     format_field,
     format_paragraph,
     format_run,
@@ -19,23 +20,13 @@ from archgen.emit.docx.word_xml import (
     name_bookmark,
     name_label_bookmark,
 )
+from archgen.emit.state_colours import CHANGE_COLOURS, MUTED_COLOUR, STATUS_COLOURS
+from archgen.emit.text_metrics import CODE_SCALE, measure_code, measure_word, split_name
 from archgen.frozen import dataclass, replace
 from archgen.views.shapes import Bullets, Inlines, Paragraph, Text
 from archgen.views.short_figures import write_comparisons
 
-MUTED_COLOUR = '<w:color w:val="55606A"/>'
-_CHANGE_COLOURS = {"added": "1C6B3C", "removed": "B3261E", "changed": "8A5300"}
-_STATUS_COLOURS = {
-    "met": "1C6B3C",
-    "not proven": "8A5300",
-    "open": "8A5300",
-    "uncovered": "8A5300",
-    "warning": "8A5300",
-    "missed": "B3261E",
-    "error": "B3261E",
-}
-"""Colours of states, which are bold as well: their words say the same on grey paper."""
-_MONOSPACE_FONT = '<w:rFonts w:ascii="Consolas" w:hAnsi="Consolas" w:cs="Consolas"/>'
+MUTED_SETTING = f'<w:color w:val="{MUTED_COLOUR}"/>'
 LINE_BREAK = "<w:r><w:br/></w:r>"
 
 
@@ -107,28 +98,34 @@ def join_text(inlines: Iterable[Text]) -> str:
 
 def _format_text(writer: DocxWriter, text: Text, shown: str, setting: RunSetting, link_style: str = "") -> str:
     before = LINE_BREAK if text.line_break else ""
+    if text.meter or text.pieces:
+        return before + format_bar(text, setting.width) + (format_run(shown) if shown else "")
     shown = shown if text.code else write_comparisons(shown)
     if not (link_style or text.strong or text.emphasis or text.code or text.muted or text.change or text.status):
-        return before + format_run(shown)
+        return before + format_run(shown, joins_ids=True)
     # In the order of the schema: style, font, bold, italics, colour (ECMA-376 17.3.2.28).
     properties = ""
     if link_style or text.code:
         properties = f'<w:rStyle w:val="{link_style or writer.styles.find_style_id("Inline Code")}"/>'
     if link_style and text.code:
         # A run has one character style, and a link's is the one that readers must see.
-        properties += _MONOSPACE_FONT
-    is_strong = text.strong or text.status in _STATUS_COLOURS
+        font = escape_text(writer.styles.find_font("Inline Code"))
+        properties += f'<w:rFonts w:ascii="{font}" w:hAnsi="{font}" w:cs="{font}"/>' if font else ""
+    is_strong = text.strong or text.status in STATUS_COLOURS
     properties += ("<w:b/><w:bCs/>" if is_strong else "") + ("<w:i/><w:iCs/>" if text.emphasis else "")
-    if text.status in _STATUS_COLOURS:
-        properties += f'<w:color w:val="{_STATUS_COLOURS[text.status]}"/>'
+    if text.status and text.status in STATUS_COLOURS:
+        properties += f'<w:color w:val="{STATUS_COLOURS[text.status]}"/>'
     elif text.change:
-        properties += f'<w:color w:val="{_CHANGE_COLOURS[text.change]}"/>'
+        properties += f'<w:color w:val="{CHANGE_COLOURS[text.change]}"/>'
     elif text.muted and not link_style:
-        properties += MUTED_COLOUR
-    if text.code and setting.size:
-        half_points = int(setting.size * CODE_SCALE * 2)  # rounded up, it would not fit what was measured
+        properties += MUTED_SETTING
+    if text.code and (setting.size or link_style):
+        # Rounded up, it would not fit what was measured. A link's style is another one than that of code.
+        size = setting.size * CODE_SCALE or writer.styles.find_face("Inline Code").size
+        half_points = int(size * 2)
         properties += f'<w:sz w:val="{half_points}"/><w:szCs w:val="{half_points}"/>'
-    return before + format_run(shown, properties)
+    # In strong type stands the id of what is told here: searched for with the hyphen of the keyboard, it is found.
+    return before + format_run(shown, properties, joins_ids=not text.strong and not text.code)
 
 
 def _format_link(writer: DocxWriter, text: Text, shown: str, setting: RunSetting) -> str:
@@ -146,6 +143,8 @@ def _format_link(writer: DocxWriter, text: Text, shown: str, setting: RunSetting
     return f'<w:hyperlink {target} w:history="1">{runs}</w:hyperlink>'
 
 
+_LOOSE_STYLE = re.compile(r'<w:pStyle w:val="[^"]*"/>(?!<w:keepNext/>)')
+"""The style of each paragraph that may part from the next one."""
 _PARAGRAPH_STYLES = {"text": "Normal", "note": "Note Box", "warning": "Warning Box", "error": "Error Box"}
 _LIST_STEP = 18.0
 """Points that a list moves to the right for each level."""
@@ -225,10 +224,8 @@ def write_text(
 
 
 def keep_with_next(piece: FlowPiece) -> FlowPiece:
-    """Return a paragraph that stays on the page, and the paper, of what follows it."""
-    style_end = piece.xml.index("/>", piece.xml.index("<w:pStyle")) + 2
-    xml = f"{piece.xml[:style_end]}<w:keepNext/>{piece.xml[style_end:]}"
-    return replace(piece, xml=xml, keep_next=True, whole=True)
+    """Return a paragraph or a table that stays on the page, and the paper, of what follows it."""
+    return replace(piece, xml=_LOOSE_STYLE.sub(r"\g<0><w:keepNext/>", piece.xml), keep_next=True, whole=True)
 
 
 def write_bullets(writer: DocxWriter, shape: Bullets) -> Iterator[FlowPiece]:

@@ -11,6 +11,8 @@ import hashlib
 import re
 from collections.abc import Mapping
 
+from archgen.emit.office_package import replace_forbidden
+
 _W = "http://schemas.openxmlformats.org/wordprocessingml/2006/main"
 _R = "http://schemas.openxmlformats.org/officeDocument/2006/relationships"
 MC = "http://schemas.openxmlformats.org/markup-compatibility/2006"
@@ -25,8 +27,8 @@ NAMESPACES = {
 }
 """The prefixes that the document declares at its root, so that pieces of text need not."""
 
-# What XML 1.0 cannot hold (control characters, halves of surrogate pairs, two non-characters), and the C1 controls, which nobody sees.
-_FORBIDDEN = re.compile("[\x00-\x08\x0b\x0c\x0e-\x1f\x7f-\x9f\ud800-\udfff\ufffe\uffff]")
+_ID_HYPHEN = re.compile(r"(?<=\b[A-Z])-(?=[0-9])|(?<=\b[A-Z]{2})-(?=[0-9])|(?<=\b[A-Z]{3})-(?=[0-9])")
+"""The hyphen of an id such as `R-24`, `UC-7` or `MAN-04`."""
 _LABEL_MARK = re.compile(r"\[label (_ag[0-9a-f]{24})\]")
 _ESCAPES = str.maketrans({"&": "&amp;", "<": "&lt;", ">": "&gt;", '"': "&quot;", "\n": " ", "\r": " "})
 _LINE_ENDS = str.maketrans("\n\r", "  ")
@@ -34,19 +36,14 @@ _LINE_ENDS = str.maketrans("\n\r", "  ")
 _NEEDS_CARE = re.compile('[&<>"\n\r\x00-\x08\x0b\x0c\x0e-\x1f\x7f-\x9f\ud800-\udfff\ufffe\uffff]')
 
 
-def clean_word_text(text: str) -> str:
-    """Return text with a visible sign for each character that XML cannot hold: python-docx and lxml raise ValueError for them."""
-    return _FORBIDDEN.sub("\ufffd", text)
-
-
 def clean_line(text: str) -> str:
     """Return clean text on one line, for attributes and properties."""
-    return clean_word_text(text).translate(_LINE_ENDS)
+    return replace_forbidden(text).translate(_LINE_ENDS)
 
 
 def escape_text(text: str) -> str:
     """Return text as it may stand in an element or between double quotes."""
-    return clean_word_text(text).translate(_ESCAPES) if _NEEDS_CARE.search(text) else text
+    return replace_forbidden(text).translate(_ESCAPES) if _NEEDS_CARE.search(text) else text
 
 
 def name_bookmark(anchor: str) -> str:
@@ -69,14 +66,17 @@ def fill_labels(xml: str, labels: Mapping[str, str]) -> str:
     return _LABEL_MARK.sub(lambda found: labels.get(found[1], found[0]), xml)
 
 
-def format_run(text: str, properties: str = "") -> str:
-    """Return a run of text; tabs in it become Word's tabs."""
+def format_run(text: str, properties: str = "", *, joins_ids: bool = False) -> str:
+    """Return a run of text; tabs in it become Word's tabs. Where it `joins_ids`, `UC-7` has a hyphen at which no line breaks."""
     props = f"<w:rPr>{properties}</w:rPr>" if properties else ""
     # Without xml:space Word drops the blanks at both ends, between two runs too (ECMA-376 17.3.3.31).
-    if "\t" not in text:
-        return f'<w:r>{props}<w:t xml:space="preserve">{escape_text(text)}</w:t></w:r>'
-    parts = "<w:tab/>".join(f'<w:t xml:space="preserve">{escape_text(part)}</w:t>' for part in text.split("\t"))
-    return f"<w:r>{props}{parts}</w:r>"
+    if joins_ids and "-" in text:
+        return f"<w:r>{props}{'<w:noBreakHyphen/>'.join(map(_format_tabs, _ID_HYPHEN.split(text)))}</w:r>"
+    return f"<w:r>{props}{_format_tabs(text)}</w:r>"
+
+
+def _format_tabs(text: str) -> str:
+    return "<w:tab/>".join([f'<w:t xml:space="preserve">{escape_text(part)}</w:t>' for part in text.split("\t")])
 
 
 def format_paragraph(style_id: str, content: str, properties: str = "") -> str:

@@ -1,4 +1,4 @@
-"""Draw the shapes Graph, Chart and SequenceChart as svg, png and pdf, with Graphviz.
+"""Draw the shapes Graph, Chart, SequenceChart and Sheet as svg, png and pdf, with Graphviz.
 
 `draw_pictures` is all that others need. Each graph is laid out by the recipe that it names, in worker processes; what
 was drawn before comes from the cache. No picture is trusted: after each layout every arrow is looked for in the result.
@@ -15,12 +15,12 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import Final
 
+from archgen.cache.layout_memory import NO_MEMORY, LayoutMemory
 from archgen.cache.program_stamp import stamp_writers
 from archgen.emit.graphviz import font_config
 from archgen.emit.graphviz import picture_cache as store
 from archgen.emit.graphviz.drawing_worker import DrawingTask
 from archgen.emit.graphviz.hidden_texts import hide_texts
-from archgen.emit.graphviz.line_crossings import NO_MEMORY, LayoutMemory
 from archgen.emit.graphviz.palette import dark_rules
 from archgen.emit.graphviz.worker_pool import (
     DrawingObserver,
@@ -31,7 +31,7 @@ from archgen.emit.graphviz.worker_pool import (
 )
 from archgen.emit.graphviz.worker_pool import draw_tasks as draw_all
 from archgen.emit.picture import Picture
-from archgen.views.picture_shapes import Chart, Drawing, SequenceChart
+from archgen.views.picture_shapes import Chart, Drawing, SequenceChart, Sheet
 
 __all__ = ["PICTURE_FORMATS", "MissingGraphviz", "dark_rules", "draw_pictures", "start_early_workers"]
 
@@ -152,6 +152,8 @@ def _link_addresses(drawing: Drawing, resolve_link: Callable[[str], str | None])
     refs: list[str | None]
     if isinstance(drawing, Chart):
         refs = [bar.ref for bar in drawing.bars]
+    elif isinstance(drawing, Sheet):
+        refs = [item.ref for items in (drawing.bars, drawing.texts) for item in items]
     elif isinstance(drawing, SequenceChart):
         refs = [lifeline.ref for lifeline in drawing.lifelines] + [message.ref for message in drawing.messages]
     else:

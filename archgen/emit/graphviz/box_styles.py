@@ -21,7 +21,7 @@ corners where it runs on events of unknown rate.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
 
 from archgen.emit.graphviz import palette
 from archgen.emit.graphviz.dot_text import escape_label, quote_value, safe_address, wrap_text
@@ -57,8 +57,8 @@ def style_box(box: Box, resolve_link: LinkResolver, title_width: int | None = No
     """Return the DOT attributes of a box, its title wrapped at the usual width of its style or at so many characters."""
     if box.ports_in or box.ports_out:
         return {**_common_attributes(box, resolve_link), "shape": "plain", "label": _port_table(box)}
-    if box.rows or box.load:
-        return {**_common_attributes(box, resolve_link), "shape": "plain", "label": write_card(box, *box_colours(box))}
+    if box.members:
+        return {**_common_attributes(box, resolve_link), "shape": "plain", "label": write_member_card(box)}
     frame, fill = box_colours(box)
     styles = [
         "filled",
@@ -222,59 +222,47 @@ def _write_port_cell(text: str, before: str, after: str) -> str:
     )
 
 
-_CARD_WIDTH = 200
-"""The least width of a card's contents, in points: all bars are as wide, so that loads can be compared."""
-_FULL = 100.0
-_TABLE = '<TABLE BORDER="0" CELLBORDER="0" CELLSPACING="0" CELLPADDING="0">'
+_MEMBER_WIDTH = 104
+"""How wide the squares of a box are together at most, in points: 13 of 6 points."""
+_SQUARE_STEPS = ((13, 6, 2), (26, 3, 1))
+"""Up to how many squares, their width and the space between two, in points; more are a bar with a piece for each hue."""
 
 
-def write_card(box: Box, frame: str, fill: str) -> str:
-    """Return the html-like label of a card: title, lines, bar and rows."""
-    titles = "<BR/>".join(f"<B>{escape_label(row)}</B>" for row in wrap_text(box.title, 34))
-    parts = [f'<TR><TD HEIGHT="14"><FONT POINT-SIZE="10" COLOR="{frame}">{titles}</FONT></TD></TR>']
-    parts += [f'<TR><TD HEIGHT="11">{_small_text(line)}</TD></TR>' for line in box.lines]
-    parts += [f"<TR><TD>{_write_bar(*box.load)}</TD></TR>"] if box.load else []
-    if box.rows:
-        rows = "".join(_write_row(name, words) for name, words in box.rows)
-        parts.append(f"<HR/><TR><TD>{_TABLE}{rows}</TABLE></TD></TR>")
+def write_member_card(box: Box, width: int = 0) -> str:
+    """Return the html-like label of a box that stands for members: title, lines, and a square for each member."""
+    frame, fill = box_colours(box)
+    titles = [escape_label(row) for row in wrap_text(box.title, 22, 3)]
+    rows = [f'<TR><TD ALIGN="LEFT" HEIGHT="13"><FONT POINT-SIZE="10.5"><B>{row}</B></FONT></TD></TR>' for row in titles]
+    rows += [
+        f'<TR><TD ALIGN="LEFT" HEIGHT="11"><FONT POINT-SIZE="8.5" COLOR="{palette.MUTED}">{row}</FONT></TD></TR>'
+        for row in _detail_rows(box, 24)
+    ]
+    rows.append(f'<TR><TD ALIGN="LEFT" HEIGHT="17" VALIGN="BOTTOM">{_write_squares(box.members)}</TD></TR>')
+    style = ",".join(["ROUNDED", *(dash.upper() for dash in _dash_styles(box) if dash in _TABLE_DASHES)])
+    border = max(1, round(float(_pen_width(box)))) if box.change or box.broken else 1
+    inner = f'<TABLE BORDER="0" CELLBORDER="0" CELLSPACING="0" CELLPADDING="0">{"".join(rows)}</TABLE>'
     return (
-        f'<<TABLE STYLE="ROUNDED" BORDER="1" COLOR="{frame}" BGCOLOR="{fill}" CELLBORDER="0" CELLSPACING="0" '
-        f'CELLPADDING="3">{"".join(parts)}</TABLE>>'
+        f'<<TABLE STYLE="{style}" BORDER="{border}" COLOR="{frame}" BGCOLOR="{fill}" CELLBORDER="0" CELLSPACING="0" '
+        f'CELLPADDING="7" WIDTH="{width}"><TR><TD ALIGN="LEFT">{inner}</TD></TR></TABLE>>'
     )
 
 
-def _small_text(text: str, colour: str = palette.MUTED) -> str:
-    return f'<FONT POINT-SIZE="8" COLOR="{colour}">{escape_label(text)}</FONT>'
-
-
-def _write_bar(percent: float | None, words: str) -> str:
-    """Return a bar as long as the load, red above 100 per cent, with its words below; without a figure the words alone."""
-    if percent is None:
-        return _small_text(words, palette.TEXT)
-    used = max(1, round(_CARD_WIDTH * min(percent, _FULL) / _FULL))
-    colour = palette.ERROR if percent > _FULL else palette.SUBJECT
-    cells = [(used, colour), (_CARD_WIDTH - used, palette.NEIGHBOUR_FILL)]
-    bar = "".join(
-        f'<TD FIXEDSIZE="TRUE" WIDTH="{width}" HEIGHT="6" BGCOLOR="{fill}"></TD>' for width, fill in cells if width > 0
+def _write_squares(members: Sequence[tuple[int | None, int]]) -> str:
+    total = sum(count for _, count in members)
+    size, gap = next((step[1:] for step in _SQUARE_STEPS if total <= step[0]), (0, 0))
+    if size:
+        cells = [(size, hue) for hue, count in members for _ in range(count)]
+    else:
+        cells = [(max(2, count * _MEMBER_WIDTH // total), hue) for hue, count in members]
+    squares = "".join(
+        f'<TD FIXEDSIZE="TRUE" WIDTH="{width}" HEIGHT="6" BGCOLOR="{palette.hue_colour(hue) if hue is not None else palette.FADED}"></TD>'
+        for width, hue in cells
     )
-    # Of fixed size: a table fills its cell, and in a wider card the two parts of the bar would come apart.
+    # Of fixed size: in a wider cell the squares would come apart.
+    wide = sum(width + gap for width, _ in cells) + gap
     return (
-        f'{_TABLE}<TR><TD FIXEDSIZE="TRUE" WIDTH="{_CARD_WIDTH}" HEIGHT="6">{_TABLE}<TR>{bar}</TR></TABLE></TD></TR>'
-        f'<TR><TD HEIGHT="11">{_small_text(words, palette.TEXT)}</TD></TR></TABLE>'
-    )
-
-
-def _write_row(name: str, words: str) -> str:
-    title = "<BR/>".join(escape_label(row) for row in wrap_text(name, 40))
-    if not words:
-        return (
-            f'<TR><TD COLSPAN="2" ALIGN="LEFT" HEIGHT="14" WIDTH="{_CARD_WIDTH}"><FONT POINT-SIZE="8"><B>'
-            f"{title.replace('<BR/>', '</B><BR/><B>')}</B></FONT></TD></TR>"
-        )
-    detail = "<BR/>".join(escape_label(row) for part in words.split("\n") for row in wrap_text(part, 40))
-    return (
-        f'<TR><TD ALIGN="LEFT" HEIGHT="11" WIDTH="{_CARD_WIDTH // 2}"><FONT POINT-SIZE="8">{title}</FONT></TD>'
-        f'<TD ALIGN="RIGHT" WIDTH="{_CARD_WIDTH // 2}"><FONT POINT-SIZE="8" COLOR="{palette.MUTED}">\u00a0{detail}</FONT></TD></TR>'
+        f'<TABLE ALIGN="LEFT" FIXEDSIZE="TRUE" WIDTH="{wide}" HEIGHT="10" BORDER="0" CELLBORDER="0" '
+        f'CELLSPACING="{gap}" CELLPADDING="0"><TR>{squares}</TR></TABLE>'
     )
 
 

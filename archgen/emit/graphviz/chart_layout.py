@@ -42,6 +42,10 @@ class _ChartScale:
     width: float
     factor: float
     maximum: float
+    gap: float
+    """How far something unknown pushes what follows."""
+    known_until: float
+    """The value up to which places on the axis are values."""
 
     def x(self, value: float) -> float:
         return self.left + value * self.factor
@@ -128,13 +132,22 @@ def _choose_scale(chart: Chart, title_width: float, value_width: float) -> _Char
     maximum = maximum * 1.04 or 1.0
     left = title_width + _COLUMN_GAP
     width = max(_CHART_WIDTH - left - value_width - _COLUMN_GAP, _MIN_SCALE_WIDTH)
-    # What is unknown has no length on the scale, but its box with the question mark needs room behind the longest bar.
-    spare = _UNKNOWN_WIDTH + 2 if any(each.length is None for bar in chart.bars for each in bar.segments) else 0.0
-    return _ChartScale(left, width, (width - spare) / maximum, maximum)
+    # What is unknown has no length on the scale, but its box with the question mark needs room, and pushes what follows.
+    boxes = max(bar.gaps + any(each.length is None for each in bar.segments) for bar in chart.bars) if chart.bars else 0
+    gap = min(_UNKNOWN_WIDTH + 2, width / 2 / boxes) if boxes else 0.0
+    # Behind the first of them the figures of the axis would be none, where it pushes anything.
+    first_pushed = next((at for at, bar in enumerate(chart.bars) if bar.gaps), 0)
+    known_ends = [
+        bar.start + math.fsum(each.length or 0.0 for each in bar.segments)
+        for bar in chart.bars[:first_pushed]
+        if any(each.length is None for each in bar.segments)
+    ]
+    known_until = min(known_ends, default=math.inf)
+    return _ChartScale(left, width, (width - gap * boxes) / maximum, maximum, gap, known_until)
 
 
 def _draw_bar(bar: ChartBar, index: int, scale: _ChartScale, middle: float) -> Iterator[ScenePart]:
-    x = scale.x(bar.start)
+    x = scale.x(bar.start) + bar.gaps * scale.gap
     known_stretches = [each for each in bar.segments if each.length is not None]
     unknown_stretches = [each for each in bar.segments if each.length is None]
     for number, (each, width) in enumerate(
@@ -149,10 +162,10 @@ def _draw_bar(bar: ChartBar, index: int, scale: _ChartScale, middle: float) -> I
         )
         yield ScenePart(
             f"b{index}.q",
-            style_stretch(question_mark, _UNKNOWN_WIDTH),
-            x + _UNKNOWN_WIDTH / 2,
+            style_stretch(question_mark, width := min(_UNKNOWN_WIDTH, scale.gap)),
+            x + width / 2,
             middle,
-            _UNKNOWN_WIDTH,
+            width,
             BAR_HEIGHT,
         )
     if bar.mark is not None:
@@ -186,6 +199,10 @@ def _draw_grid(chart: Chart, scale: _ChartScale, bottom: float) -> Iterator[Scen
         yield ScenePart(f"a{at}", tick_labels[at], x, bottom - 7, *size, "label")
 
 
+_MAX_MILLISECONDS = 3000
+"""Longer axes are told in seconds, as the figures beside the bars are."""
+
+
 def _choose_ticks(scale: _ChartScale, unit: str) -> list[tuple[str, float]]:
     """Return four to eight round figures along the scale, as text and value. The last names the unit."""
     # Aim at 48 points or more between two figures, room for their texts.
@@ -193,7 +210,17 @@ def _choose_ticks(scale: _ChartScale, unit: str) -> list[tuple[str, float]]:
     power = 10.0 ** math.floor(math.log10(smallest_step))
     step = next(each * power for each in (1, 2, 5, 10) if each * power >= smallest_step)
     count = int(scale.maximum / step)
-    return [(f"{at * step:.10g}{f' {unit}' if at == count else ''}", at * step) for at in range(count + 1)]
+    if unit == "ms" and scale.maximum > _MAX_MILLISECONDS:
+        per_unit, unit = 1000, "s"
+    else:
+        per_unit = 1
+    ticks = [(f"{at * step / per_unit:.10g}{f' {unit}' if at == count else ''}", at * step) for at in range(count + 1)]
+    known_ticks = [(text, value) for text, value in ticks if value <= scale.known_until]
+    if len(known_ticks) == len(ticks):
+        return ticks
+    # Behind what nobody knows the figures would be no times.
+    text, value = known_ticks[-1]
+    return [*known_ticks[:-1], (f"{text} {unit} + ?", value)]
 
 
 def _draw_limit(chart: Chart, scale: _ChartScale, bottom: float) -> Iterator[ScenePart]:
@@ -201,7 +228,7 @@ def _draw_limit(chart: Chart, scale: _ChartScale, bottom: float) -> Iterator[Sce
     if chart.limit is None:
         return
     limit_value, text = chart.limit
-    is_far = limit_value > scale.maximum
+    is_far = limit_value > min(scale.maximum, scale.known_until)
     attributes = style_small_text(f"{text} →" if is_far else text, palette.ERROR)
     ((wide, high),) = measure_nodes([attributes])
     x = scale.right if is_far else scale.x(limit_value)

@@ -13,7 +13,7 @@ import struct
 import sys
 from typing import IO, Any
 
-from archgen.emit.graphviz.line_crossings import NO_MEMORY, LayoutMemory
+from archgen.cache.layout_memory import NO_MEMORY, LayoutMemory
 from archgen.emit.picture import Picture
 from archgen.frozen import dataclass
 from archgen.views.picture_shapes import Drawing

@@ -82,6 +82,7 @@ _ARROW_SAMPLES: dict[str, tuple[Arrow, str]] = {
 }
 _KEY_SENTENCES = {
     "count": "A number on an arrow: how many flows it stands for; the more, the thicker it is.",
+    "heads": "A number at an arrow head: how many flows arrive by it (1 where none stands); the more on a line, the thicker it is. Amber heads run back, against the order of the columns.",
     "star": "* all that it offers is taken.",
 }
 

@@ -15,24 +15,26 @@ from collections.abc import Iterable, Mapping, Sequence
 from functools import lru_cache
 from html import escape
 
+from archgen.cache.layout_memory import NO_MEMORY, LayoutMemory
 from archgen.emit.graphviz import (
     chart_layout,
     flow_layout,
     framed_layout,
     layout_engine,
+    overview_layout,
     sequence_layout,
+    sheet_layout,
     two_step_layout,
 )
 from archgen.emit.graphviz.box_styles import add_decorations
 from archgen.emit.graphviz.dot_text import clean_label_text
 from archgen.emit.graphviz.drawn_legend import add_graph_legend
-from archgen.emit.graphviz.line_crossings import NO_MEMORY, LayoutMemory
 from archgen.emit.graphviz.placed_scene import Scene
 from archgen.emit.graphviz.png_writer import render_png
 from archgen.emit.graphviz.styled_graph import StyledGraph, style_graph
 from archgen.emit.picture import Picture
 from archgen.frozen import replace
-from archgen.views.picture_shapes import Chart, Drawing, Graph, SequenceChart
+from archgen.views.picture_shapes import Chart, Drawing, Graph, SequenceChart, Sheet
 
 _LAYOUT_FUNCTIONS = {
     "flow": flow_layout.lay_out_flow,
@@ -53,8 +55,10 @@ def lay_out_graph(
     styled_graph = style_graph(graph, links.get, merged=graph.layout in {"two-step", "overview"})
     if simple:
         scene = flow_layout.lay_out_simply(styled_graph)
-    elif graph.layout in {"two-step", "overview"}:
+    elif graph.layout == "two-step":
         scene = two_step_layout.lay_out_two_step(styled_graph, memory)
+    elif graph.layout == "overview":
+        scene = overview_layout.lay_out_overview(styled_graph, memory)
     else:
         scene = _LAYOUT_FUNCTIONS[graph.layout](styled_graph)
     drawn_arrows = {line.arrow for line in scene.lines}
@@ -98,6 +102,9 @@ def draw_picture(  # noqa: PLR0913 - what to draw, and how, each by its name
         return render_picture(
             drawing, chart_layout.lay_out_chart(drawing, links.get), formats, quick=True, warning=warning
         )
+    if isinstance(drawing, Sheet):
+        scene = sheet_layout.lay_out_sheet(drawing, links.get)
+        return render_picture(drawing, scene, formats, quick=False, warning=warning)
     if isinstance(drawing, SequenceChart):
         # Many hues side by side: gd's own palette would take two pale fills for one.
         return render_picture(

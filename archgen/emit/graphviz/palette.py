@@ -23,6 +23,8 @@ NOTE = "#0b5a9c"
 WARNING = "#8a5300"
 ERROR = "#b3261e"
 FADED = "#a3abb2"
+FEEDBACK = "#b25e00"
+"""Heads of arrows that run against the order of columns."""
 
 HUES = (
     "#5b6770",
@@ -94,6 +96,7 @@ _DARK = {
     ERROR: "#ff8a80",
     OK: "#6fd19a",
     FADED: "#5d6770",
+    FEEDBACK: "#f2a65a",
 }
 
 

@@ -1,5 +1,4 @@
-"""The layouts `two-step` and `overview`: frames as boxes of fixed size in an outer graph, with their insides set into
-them.
+"""The layout `two-step`: frames as boxes of fixed size in an outer graph, with their insides set into them.
 
 No graph that dot gets has frames and labels at once: it cannot lay these out. The outer graph is tried in several ways:
 as dot likes it, downwards and to the right (one of them, where the project says which), and folded into rows or columns
@@ -14,11 +13,12 @@ import math
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from functools import cache, partial
 
+from archgen.cache.layout_memory import NO_MEMORY, LayoutMemory
 from archgen.emit.graphviz import layout_engine
 from archgen.emit.graphviz.frame_contents import lay_out_inside
 from archgen.emit.graphviz.group_order import GroupRows, fold_order, order_forward
 from archgen.emit.graphviz.label_places import declutter_labels
-from archgen.emit.graphviz.line_crossings import NO_MEMORY, LayoutCandidate, LayoutMemory, count_crossings, line_length
+from archgen.emit.graphviz.line_crossings import count_crossings, line_length
 from archgen.emit.graphviz.placed_scene import Scene, SceneFrame, SceneLine, ScenePart, format_attributes, read_scene
 from archgen.emit.graphviz.styled_graph import (
     StyledGraph,
@@ -37,6 +37,8 @@ _DIRECTIONS = {None: ("TB", "LR"), "left-right": ("LR",), "top-bottom": ("TB",)}
 """Directions to try by the one that the project asks for."""
 _TURNED_PENALTY = 1.2
 _TILE_MARGIN = 12.0
+LayoutCandidate = tuple[str, Sequence[str]]
+"""A way to lay out a graph: settings and statements in DOT."""
 RowMeasure = Callable[[tuple[str, ...]], tuple[float, float]]
 _INVISIBLE_NODE = {"style": '"invis"', "label": '""', "shape": '"point"'}
 """Attributes of the ends of arrows between frames: lines need nodes to end at."""
@@ -77,9 +79,9 @@ def _lay_out_best(
 ) -> Scene:
     """Try all layouts of the outer graph, unless memory tells which one is the best."""
     problem = _describe_problem(styled_graph, tiles, arrows)
-    candidate = memory.recall_choice(problem)
-    if candidate is not None:
-        return _lay_out_tiles(styled_graph, tiles, arrows, candidate)
+    match memory.recall_choice(problem):
+        case [str(settings), [*statements]]:
+            return _lay_out_tiles(styled_graph, tiles, arrows, (settings, [str(each) for each in statements]))
     candidates = list(_candidate_layouts(styled_graph, tiles, arrows))
     scenes = [_lay_out_tiles(styled_graph, tiles, arrows, each) for each in candidates]
     best = _find_best_scene(scenes, arrows)

@@ -45,17 +45,20 @@ def build_site(  # noqa: PLR0913 - what a site is made of
     chapter_files: ChapterFiles,
     search_entries: Sequence[SearchEntry] = (),
     explorer_map: ExplorerMap | None = None,
+    report: str = "",
 ) -> FileTree:
     """Build the site. The first page is the start page; `chapter_files` returns the pictures that chapters show.
 
     Without an `explorer_map` the explorer's page stays what it is without scripts.
+
+    `report` is the path of the report from the site's folder, where there is one.
 
     Links in the pictures must be `#` and the anchor that they lead to.
     """
     chapter_writer = ChapterWriter(chapter_files)
     frame = make_frame(pages, title=title, revision=revision, notices=notices)
     map_files = build_explorer_files(explorer_map, frame.links) if explorer_map else {}
-    frame = replace(frame, map_parts=tuple(map_files))
+    frame = replace(frame, map_parts=tuple(map_files), report=report)
 
     def yield_files() -> Iterator[tuple[str, bytes]]:
         yield from read_assets()
@@ -87,6 +90,8 @@ class SiteFrame:
     map_parts: tuple[str, ...] = ()
     """The paths of the scripts with what the explorer shows."""
     version: str = ""
+    report: str = ""
+    """The path of the report from the site's folder, where there is one."""
 
 
 def make_frame(
@@ -134,6 +139,7 @@ def _frame_page(page: Page, writer: PageWriter, frame: SiteFrame) -> PageFrame:
         policy=LIVE_PAGE_POLICY if frame.version else PAGE_POLICY,
         root=root,
         start=root + navigation.start,
+        report=root + frame.report if frame.report else "",
         heading=page.title,
         lead=page.lead,
         crumbs=navigation.page_crumbs(page, root),

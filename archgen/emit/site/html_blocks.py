@@ -41,6 +41,8 @@ from archgen.views.shapes import (
 )
 
 _SPOKEN_PREFIX = {"note": "Note: ", "warning": "Warning: ", "error": "Error: "}
+MAX_TABLE_ROWS = 150
+"""A longer table of the site is shown page by page."""
 _MIN_WIDE_COLUMNS = 3
 """A table with fewer columns is not stretched: its values stay near their names."""
 _ALIGNMENT_CLASS = {"left": "", "right": ' class="right"', "centre": ' class="centre"'}
@@ -182,16 +184,24 @@ class PageWriter:
         # A table without anchors has an empty tuple, and `zip` is strict.
         anchors = table.row_anchors or (None,) * len(table.rows)
         openings = [f"<td{_ALIGNMENT_CLASS[column.align]}" for column in table.columns]
-        body = "\n".join(
-            [self._write_row(row, anchor, openings) for row, anchor in zip(table.rows, anchors, strict=True)]
-        )
+        rows = [self._write_row(row, anchor, openings) for row, anchor in zip(table.rows, anchors, strict=True)]
         heads = "".join([_write_head(column.title, column.align) for column in table.columns])
+        rest = ""
+        if len(rows) > MAX_TABLE_ROWS and not self.standalone:
+            # A browser with scripts takes this for text, and shows the rows page by page; one without shows all of them.
+            rest_rows = "\n".join(rows[MAX_TABLE_ROWS:])
+            rows = rows[:MAX_TABLE_ROWS]
+            rest = (
+                f'<noscript class="rest">\n<table>\n<caption class=spoken>{caption}, continued</caption>\n'
+                f"<thead><tr>{heads}</tr></thead>\n<tbody>\n{rest_rows}\n</tbody>\n</table>\n</noscript>\n"
+            )
+        body = "\n".join(rows)
         return (
             f'<div class="table{" narrow" if len(table.columns) < _MIN_WIDE_COLUMNS else ""}"{self._id_attribute(table.anchor)}>\n'
             f'<div class="scroll" role="group" tabindex="0" aria-label="{caption}">\n<table>\n'
             f"<caption{' class=spoken' if hides_caption else ''}>{caption}</caption>\n"
             f"{_write_widths(tuple([column.weight for column in table.columns]))}"
-            f"<thead><tr>{heads}</tr></thead>\n<tbody>\n{body}\n</tbody>\n</table>\n</div>\n</div>"
+            f"<thead><tr>{heads}</tr></thead>\n<tbody>\n{body}\n</tbody>\n</table>\n</div>\n{rest}</div>"
         )
 
     def _write_row(self, row: tuple[Inlines, ...], anchor: str | None, openings: Sequence[str]) -> str:
@@ -231,13 +241,18 @@ class PageWriter:
                 f"This picture could not be drawn.</p>\n<figcaption>{caption}</figcaption>\n</figure>"
             )
         svg = page_pictures.inline_svg(picture.svg, self.current_page.href, alt)
+        upright = self.pictures.get(figure.narrow or "")
+        narrow_svg = (
+            page_pictures.inline_svg(upright.svg, self.current_page.href, alt) if upright and upright.svg else ""
+        )
+        narrow = f'<div class="canvas narrow">{narrow_svg}</div>\n' if narrow_svg else ""
         warning = f'<p class="notice warning">{escape_html(picture.warning)}</p>\n' if picture.warning else ""
         canvas = f"canvas {name_natural_width(picture)}" if self.standalone else "canvas"
         # A sequence keeps its size: it is read from step to step, with the canvas moved below it.
         is_sequence = figure.graph.startswith(CHART_PREFIX)
         kind, focus = ("picture sequence", ' tabindex="0"') if is_sequence else ("picture", "")
         return (
-            f'<figure class="{kind}"{self._id_attribute(figure.anchor)}>\n<div class="{canvas}"{focus}>{svg}</div>\n{warning}'
+            f'<figure class="{kind}"{self._id_attribute(figure.anchor)}>\n<div class="{canvas}"{focus}>{svg}</div>\n{narrow}{warning}'
             f"<figcaption><span>{caption}</span>{self._picture_link(figure.graph, caption)}</figcaption>\n</figure>"
         )
 

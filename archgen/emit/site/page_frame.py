@@ -44,6 +44,8 @@ class PageFrame:
     explorer_begin: str = ""
     explorer_scripts: Sequence[str] = ()
     explorer_link: str = ""
+    report: str = ""
+    """The address of the report, where it stands beside the site."""
 
 
 def write_frame(page: PageFrame) -> str:
@@ -73,6 +75,7 @@ def _write_head(page: PageFrame) -> str:
     version = escape_html(page.version)
     version_attribute = f' data-version="{version}"' if page.version else ""
     revision = f'<span class="revision">{escape_html(page.revision)}</span>\n' if page.revision else ""
+    report = f'<a class="report" href="{escape_html(page.report)}">Report</a>\n' if page.report else ""
     return f"""\
 <!DOCTYPE html>
 <html lang="en"{version_attribute}>
@@ -92,7 +95,7 @@ def _write_head(page: PageFrame) -> str:
 <header class="bar">
 <button type="button" class="menu" popovertarget="navigation" aria-label="Menu"><span aria-hidden="true"></span></button>
 <a class="project" href="{escape_html(page.start)}">{title}</a>
-{revision}<button type="button" class="theme" hidden>Dark</button>
+{revision}{report}<button type="button" class="theme" hidden>Dark</button>
 </header>
 <div class="frame">"""
 

@@ -17,6 +17,8 @@ EXPLORER_ANCHOR = "page:explorer"
 EXPLORER_STYLE = "assets/explorer/explorer.css"
 _BEGIN_SCRIPT = "assets/explorer/data.js"
 """Runs before anything is drawn, so that the static page does not show first."""
+_SAVE_SCRIPT = "assets/save.js"
+"""Saves pictures; other pages load it when somebody asks for one."""
 _PAGE_SCRIPTS = (
     "grammar",
     "properties",
@@ -33,11 +35,11 @@ _PAGE_SCRIPTS = (
     "light",
     "camera",
     "minimap",
+    "durations",
     "panel",
     "tools",
     "legend",
     "list",
-    "save",
     "keys",
     "main",
 )
@@ -65,7 +67,7 @@ def build_explorer_files(explorer_map: ExplorerMap, links: SiteLinks) -> dict[st
 
 def list_explorer_scripts(map_parts: Sequence[str]) -> tuple[str, tuple[str, ...]]:
     """Return the path of the script that begins, and of those that run when the page is read."""
-    return _BEGIN_SCRIPT, (*map_parts, *(f"assets/explorer/{name}.js" for name in _PAGE_SCRIPTS))
+    return _BEGIN_SCRIPT, (*map_parts, _SAVE_SCRIPT, *(f"assets/explorer/{name}.js" for name in _PAGE_SCRIPTS))
 
 
 def find_explorer_address(page: Page, links: SiteLinks) -> str | None:

@@ -116,7 +116,9 @@ class SiteNavigation:
         items = [self._write_entry(page, ancestry, root) for page in self._visible_pages(list_name, ancestry)]
         if self._is_long(list_name, ancestry):
             hidden_count = len(self.children[list_name]) - len(items)
-            items.append(f'<li><a href="{root}{self.start}">{hidden_count} more on the start page</a></li>')
+            listing = self.pages.get("page:groups") if kind == "groups" else None
+            target, place = (listing.path, "one page") if listing else (self.start, "the start page")
+            items.append(f'<li><a href="{root}{target}">{hidden_count} more on {place}</a></li>')
         heading = f"<h2>{escape_html(title)}</h2>\n" if title else ""
         return f"{heading}<ul>\n{NEWLINE.join(items)}\n</ul>" if items else ""
 

@@ -14,6 +14,8 @@ HATCH_ID = "waterfall-hatch"
 _BAR_HEIGHT = 16
 _LATE_SHARE = 0.5
 """Words of what begins behind this share of the axis stand at its right."""
+_MOST_BESIDE = 12
+"""The letters that stand beside a bar, on a phone too; more of them stand below it."""
 _LABEL_GAP = 0.12
 """Two labels that are nearer to each other than this share would lie on each other: the first one goes."""
 
@@ -141,12 +143,26 @@ def _write_step(step: WaterfallStep, waterfall: Waterfall, write_inlines: Callab
         else ""
     )
     is_late = bool(step.pieces) and step.pieces[0].start > _LATE_SHARE
+    beside = _write_beside(step)
     note = f'<span class="muted">{write_inlines(step.note)}</span>' if step.note else ""
     return (
         f'<li><div class="who">{write_inlines((step.title,))}{note}</div>'
         f'<div class="when{" late" if is_late else ""}"><svg class="scale" width="100%" height="24" aria-hidden="true">{lines}{pieces}'
-        f"{mark}</svg><p>{write_figures(step.words)}</p></div></li>"
+        f"{mark}{beside}</svg><p{' class=spoken' if beside else ''}>{write_figures(step.words)}</p></div></li>"
     )
+
+
+def _write_beside(step: WaterfallStep) -> str:
+    """Write short words at the end of their bar, or before it where it ends late; empty for longer ones."""
+    words = shorten_figures(step.words)
+    if not step.pieces or len(words) > _MOST_BESIDE:
+        return ""
+    start, end = step.pieces[0].start, step.pieces[-1].end
+    if end < 1 - 2 * _LABEL_GAP:
+        return f'<text x="{_percent(end)}" dx="6" y="16">{escape_html(words)}</text>'
+    if start > 2 * _LABEL_GAP:
+        return f'<text x="{_percent(start)}" dx="-6" y="16" text-anchor="end">{escape_html(words)}</text>'
+    return ""
 
 
 def _write_lines(waterfall: Waterfall) -> Iterable[str]:

@@ -114,8 +114,8 @@ def _list_demands(configuration: TriedConfiguration) -> Iterator[str]:
     kinds = {change.kind for change in configuration.changes}
     if "priority" in kinds:
         yield (
-            "Priorities are those of processes under SCHED_FIFO: what starts each has to set its own (in a launch file "
-            '`prefix="chrt -f 20"`), and may do so with CAP_SYS_NICE, or with `rtprio 99` in /etc/security/limits.d.'
+            "Priorities are those of processes under SCHED_FIFO: launch files, scripts, units and compose files of "
+            "`archgen generate` start each with its own, which needs CAP_SYS_NICE, or `rtprio 99` in /etc/security/limits.d."
         )
     if "container" in kinds:
         yield "What leaves a container is started as a process of its own, and no message passes inside of one any more."

@@ -10,12 +10,13 @@ from archgen.diagnostics.common_wording import join_first
 from archgen.diagnostics.text_columns import TextRow, align_rows
 from archgen.emit.data import timing_json
 from archgen.emit.terminal import chain_gaps, chain_remedies
-from archgen.emit.terminal.chain_gaps import describe_gaps, describe_slack
+from archgen.emit.terminal.chain_gaps import describe_slack
 from archgen.emit.terminal.timing_text import format_figure, format_missing
 from archgen.timing.analysis import Analysis, ChainResult, ChainTerm
 from archgen.timing.chains.chain_advice import advise_on_chain
 from archgen.timing.chains.chain_bounds import BoundedPath
 from archgen.timing.chains.chain_verdicts import VERDICT_WORDS
+from archgen.timing.chains.missing_figures import describe_gaps
 from archgen.timing.figures import figure_wording
 from archgen.timing.figures.timing_values import TimingValue
 from archgen.timing.figures.value_arithmetic import list_assumptions

@@ -55,7 +55,7 @@ def _format_changes(history: History, width: int | None) -> str:
         ]
         pairs.append((format_finding_counts(old_row.findings) if old_row else "", format_finding_counts(row.findings)))
         rows.append((f"{row.scope} {row.title}", *(format_change(*pair) for pair in pairs)))
-    if not rows:
+    if not rows or first is last:
         return ""
     return f"\nfrom {name_point(first, history)} to {name_point(last, history)}\n" + list_formats.format_columns(
         ("of", "components", *PROGRESS_STEPS, "findings"), rows, width

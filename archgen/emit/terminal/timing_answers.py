@@ -11,10 +11,10 @@ from archgen.diagnostics.safe_text import make_visible
 from archgen.diagnostics.source_span import Span
 from archgen.diagnostics.text_columns import TextRow, align_rows, format_section
 from archgen.emit.data import timing_json
-from archgen.emit.terminal.chain_gaps import describe_gaps
 from archgen.emit.terminal.timing_text import format_figure
 from archgen.timing.analysis import Analysis, ChainResult
 from archgen.timing.chains.chain_sensitivity import ChainSensitivity, UnknownFigure
+from archgen.timing.chains.missing_figures import describe_gaps
 from archgen.timing.chains.working_lines import ReasonLine
 from archgen.timing.figures import figure_wording
 from archgen.timing.figures.timing_values import TimingValue

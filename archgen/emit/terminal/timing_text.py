@@ -8,13 +8,13 @@ from fractions import Fraction
 from archgen.diagnostics.common_wording import join_first
 from archgen.diagnostics.text_columns import TextRow, format_section
 from archgen.emit.terminal import chain_gaps, chain_remedies
-from archgen.emit.terminal.chain_gaps import describe_gaps
 from archgen.timing.analysis import Analysis, ChainResult, HostLoad
 from archgen.timing.chains.chain_advice import advise_on_chain
 from archgen.timing.chains.chain_verdicts import VERDICT_MEANINGS, VERDICT_WORDS
 from archgen.timing.chains.figure_explanations import describe_behaviour
 from archgen.timing.chains.fused_inputs import find_fused_inputs
 from archgen.timing.chains.loop_rounds import LoopRound
+from archgen.timing.chains.missing_figures import describe_gaps
 from archgen.timing.figures import figure_wording
 from archgen.timing.figures.figure_wording import name_unknown_reason
 from archgen.timing.figures.timing_values import TimingValue
@@ -24,25 +24,37 @@ from archgen.timing.load.resource_loads import list_turn_notes
 from archgen.timing.search.proposals import Proposal
 from archgen.timing.system.thread_pools import find_joint_nodes
 
+_CHAINS_TITLE = "Chains: largest reaction time (= largest data age)"
+_ADVICE_TITLE = "What is late or not proven to be in time, and why"
+_HOSTS_TITLE = "Hosts: load (100 % is one core all the time)"
+_LINKS_TITLE = "Links"
+_FIRST_TITLES = frozenset({_CHAINS_TITLE, _ADVICE_TITLE, chain_remedies.REMEDY_TITLE, _HOSTS_TITLE, _LINKS_TITLE})
+"""What a terminal shows without being asked for more."""
 
-def format_timing(
+
+def format_timing(  # noqa: PLR0913 - what is shown of all
     analysis: Analysis,
     chains: Mapping[str, ChainResult],
     loops: Iterable[LoopRound],
     width: int | None = None,
     proposal: Proposal | None = None,
+    *,
+    is_short: bool = False,
 ) -> Iterator[str]:
-    """Yield the whole picture: chains first, then hosts, links, services, elements, loops. `width` is the terminal's."""
+    """Yield the whole picture: chains first, then hosts, links, services, elements, loops. `width` is the terminal's.
+
+    Where it `is_short`, there is what a screen has room for, and how many rows the rest has.
+    """
     sections = (
-        ("Chains: largest reaction time (= largest data age)", _chain_rows(analysis, chains.values())),
+        (_CHAINS_TITLE, _chain_rows(analysis, chains.values())),
         (
-            "What is late or not proven to be in time, and why",
+            _ADVICE_TITLE,
             _advice_rows(analysis, chains.values()),
         ),
         (chain_remedies.REMEDY_TITLE, chain_remedies.list_remedy_rows(proposal)),
-        ("Hosts: load (100 % is one core all the time)", _host_rows(analysis)),
+        (_HOSTS_TITLE, _host_rows(analysis)),
         ("Resources: load, and longest time from asking until done", _resource_rows(analysis)),
-        ("Links", _link_rows(analysis)),
+        (_LINKS_TITLE, _link_rows(analysis)),
         (
             "Services and actions: longest time from a call until it is worked off, for one call of each that calls",
             _service_rows(analysis),
@@ -59,8 +71,17 @@ def format_timing(
         ("Loops: latency of one round", _loop_rows(loops)),
         ("What is taken for granted", _assumption_rows(analysis)),
     )
-    lines = [line for title, rows in sections for line in format_section(title, rows, width)]
+    rows_by_title = {title: list(rows) for title, rows in sections}
+    hidden = {title: rows for title, rows in rows_by_title.items() if is_short and rows and title not in _FIRST_TITLES}
+    shown = [(title, rows) for title, rows in rows_by_title.items() if title not in hidden]
+    lines = [line for title, rows in shown for line in format_section(title, rows, width)]
     yield from lines
+    if hidden:
+        counts = (f"{title.partition(':')[0]} ({len(rows)})" for title, rows in hidden.items())
+        rest = (f"{'; '.join(counts)}: `archgen timing --all`, or into a pipe",)
+        yield from format_section("Not shown, for a screen to have room", [rest], width)
+        yield from _fault_lines(analysis)
+        return
     yield from format_legend(analysis, chains, "\n".join(lines), width)
     yield from _fault_lines(analysis)
 

@@ -53,13 +53,14 @@ def render_backend(
 def render_workspace(
     backend: Backend,
     views: Mapping[str, object],
+    places: Mapping[str, str] = {},
     limits: TemplateLimits = DEFAULT_LIMITS,
     answer_store: FileStore = NO_ANSWERS,
 ) -> tuple[tuple[GeneratedFile, ...], tuple[Diagnostic, ...]]:
     """Render the files of a backend that makes a workspace, with the paths that its manifest says.
 
-    Where a template fails or a path is no good there are no files, but diagnostics. What templates wrote from the same
-    data is taken from the store.
+    Where a template fails or a path is no good there are no files, but diagnostics, with the place where an element is
+    written that `places` has for what the view calls so. What templates wrote from the same data is taken from the store.
     """
     answer = _render_files(backend, views, limits, answer_store)
     if "error" in answer:
@@ -69,9 +70,11 @@ def render_workspace(
         files = [GeneratedFile(path.removeprefix("assets/"), data) for path, data in _read_assets(backend)]
     except (_AssetError, OSError) as error:
         return (), (_make_diagnostic(backend, {"error": str(error), "template": None, "line": None}),)
-    for path, text, position, expected_words, place in answer["files"]:
+    for path, text, position, expected_words, offered_words, place in answer["files"]:
         entry = backend.files[position]
-        files.append(GeneratedFile(path, text.encode(), entry.executable, entry.once, tuple(expected_words), place))
+        words = (tuple(expected_words), tuple(offered_words))
+        file = GeneratedFile(path, text.encode(), entry.executable, entry.once, *words, places.get(place, place))
+        files.append(file)
     problems = tuple(
         _make_diagnostic(backend, {"error": problem, "template": None, "line": None})
         for problem in find_path_problems(files)

@@ -1,7 +1,7 @@
 """Filters of templates that write code: text as a string, a comment or a word of a language, names as its identifiers.
 
 Whatever the text says, it stays inside of what the filter makes of it. The names in `CODE_FILTERS` are part of
-docs/generation.md.
+docs/own_generators.md.
 """
 
 from __future__ import annotations

@@ -126,7 +126,7 @@ class PlannedFile(NamedTuple):
 def render_request(request: Mapping[str, Any]) -> dict[str, Any]:
     """Render every file. Return `files`, or `error` with its `template` and `line`.
 
-    A file is its path, text, position in the manifest, expected words, and the place of what it is written for.
+    A file is its path, text, position in the manifest, expected and offered words, and the place of what it is written for.
     """
     limits = TemplateLimits(**request["limits"])
     current_template: dict[str, str] = {}
@@ -176,7 +176,7 @@ def _render_files(
     request: Mapping[str, Any],
     limits: TemplateLimits,
     current_template: dict[str, str],
-) -> Iterator[tuple[str, str, int, list[str], str]]:
+) -> Iterator[tuple[str, str, int, list[str], list[str], str]]:
     """Yield each file. All paths are planned first, so that templates can link to files that come later.
 
     `current_template["template"]` always names the template in work, for the message of an error.
@@ -187,8 +187,8 @@ def _render_files(
     }
     remaining = limits.output
     # Compiled once for each entry: compiling takes longer than most files.
-    expectations = [
-        sandbox.from_string(entry["expects"]) if entry.get("expects") else None for entry in request["files"]
+    contracts = [
+        [sandbox.from_string(entry.get(key) or "") for key in ("expects", "offers")] for entry in request["files"]
     ]
     for file in planned:
         current_template["template"] = file.entry["template"]
@@ -198,9 +198,8 @@ def _render_files(
         remaining -= len(text)
         text.encode()  # half a character is a mistake of this template
         current_template.clear()
-        expectation = expectations[file.position]
-        expected_words = expectation.render(**values).split() if expectation else []
-        yield file.path, text, file.position, expected_words, file.place
+        expected_words, offered_words = (each.render(**values).split() for each in contracts[file.position])
+        yield file.path, text, file.position, expected_words, offered_words, file.place
 
 
 def _list_values(request: Mapping[str, Any], item: object, key: object) -> dict[str, Any]:

@@ -6,6 +6,7 @@ import os
 import stat
 import unicodedata
 from collections.abc import Iterable, Iterator
+from functools import lru_cache
 from pathlib import Path
 
 from archgen.emit.file_tree import digest_named_file, list_files_below
@@ -30,12 +31,16 @@ class GeneratedFile:
     """The user's own from the start: written where it is absent, and never touched again."""
     expected_words: tuple[str, ...] = ()
     """Words that the user's own file should hold."""
+    offered_words: tuple[str, ...] = ()
+    """Words that it may use of what is generated."""
     place: str = ""
     """Where the element stands that it is made for, such as `archgen.yaml:12:3`; empty where there is none."""
 
 
 def fold_file_path(path: str) -> str:
     """Return a path as file systems compare it that ignore case, or write letters and accents apart."""
+    if path.isascii():
+        return path.lower()
     return unicodedata.normalize("NFC", unicodedata.normalize("NFC", path).casefold())
 
 
@@ -59,16 +64,17 @@ def find_path_problems(files: Iterable[GeneratedFile]) -> Iterator[str]:
         files_by_fold.setdefault(fold, file)
 
 
+@lru_cache(65536)  # asked of each file that is made, and of each in the record
 def explain_bad_path(path: str) -> str:
     """Return why a path may not be written, as the end of a sentence; empty where it may."""
     if explain_long_path(path):
         return "is too long a path"
     if not is_safe_path(path):
         return "is no path that every system takes"
-    parts = path.split("/")
-    if any(len(part.encode("utf-8", "surrogatepass")) > _MAX_PART_BYTES for part in parts):
+    data = path.encode("utf-8", "surrogatepass")
+    if len(data) > _MAX_PART_BYTES and any(len(part) > _MAX_PART_BYTES for part in data.split(b"/")):
         return f"has a part of more than {_MAX_PART_BYTES} bytes"
-    folded_parts = [fold_file_path(part) for part in parts]
+    folded_parts = fold_file_path(path).split("/")
     if any(part in _TOOL_FOLDERS or part.startswith("git~") for part in folded_parts):
         return "leads into a folder of another tool"
     return ""

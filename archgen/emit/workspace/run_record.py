@@ -7,8 +7,12 @@ for everything stands for all of its parts.
 
 from __future__ import annotations
 
+import base64
+import contextlib
+import hashlib
 import json
 import os
+import re
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
@@ -20,6 +24,19 @@ from archgen.frozen import dataclass, field
 RECORD_FOLDER = ".archgen"
 _FORMAT = 1
 _MAX_RECORD_BYTES = 64_000_000
+_HEAD_KEYS = ("archgen", "about")
+_FRAME_LINES = frozenset({"", "{", "}", '"files": {', "}}"})
+_FRAME_COUNT = 6
+"""The lines of a record that has no files."""
+_MARKERS = ("<<<<<<<", "=======", ">>>>>>>", "|||||||")
+_MARKERS_IN_BYTES = tuple(each.encode() for each in _MARKERS)
+_LINE_BYTES = 3
+_LINE_LETTERS = 4
+"""So many letters write so many bytes."""
+_PLAIN_PATH = re.compile(r"[A-Za-z0-9_./+@-]+\Z")
+"""A path that means itself among git's patterns."""
+_ATTRIBUTES_BEGIN = "# archgen: git merges these files without a conflict, and `archgen generate` makes them anew"
+_ATTRIBUTES_END = "# archgen: end"
 _HEADER = "archgen wrote these files. It replaces and removes them as long as nobody edits them, and touches no others."
 
 
@@ -34,6 +51,12 @@ class RecordedFile:
     """Whether it is the user's own from the start."""
     kept: bool = False
     """Whether the user took it over with `--keep`."""
+    meanings: Mapping[str, str] = field(default_factory=dict)
+    """What the names mean that the user's own file defines and uses, when that was last held against the model."""
+    lines: str = ""
+    """Short digests of the lines that archgen wrote, joined: they tell a merge of two of its texts from what somebody wrote."""
+    successor: str = ""
+    """The empty file in place of one that nothing needs any more, until somebody writes into it."""
 
     @property
     def is_own(self) -> bool:
@@ -56,26 +79,107 @@ def read_run_record(workspace: Path, backend: str) -> RunRecord:
         return RunRecord(backend)
     if path.is_symlink() or not path.is_file() or path.stat().st_size > _MAX_RECORD_BYTES:
         raise _explain_bad_record(path, "it is no plain file")
+    files: dict[str, RecordedFile] = {}
     try:
-        data = json.loads(path.read_bytes())
-        if data["archgen"] != _FORMAT:
+        entries = _list_entries(path.read_text("utf-8"))
+        if entries[0] != ("archgen", _FORMAT):
             raise _explain_bad_record(path, "another version of archgen wrote it")
-        files = {str(name): _read_file(name, entry) for name, entry in data["files"].items()}
-    except (ValueError, KeyError, TypeError, AttributeError, RecursionError):
+        for name, entry in entries:
+            if name not in _HEAD_KEYS or isinstance(entry, dict):
+                file = _read_file(name, entry)
+                files[name] = _join_entries(files[name], file) if name in files else file
+    except (ValueError, LookupError, TypeError, AttributeError, RecursionError):
         raise _explain_bad_record(path, "it is damaged") from None
     return RunRecord(backend, files)
 
 
+def _list_entries(text: str) -> list[tuple[str, Any]]:
+    """Return what a record says, line by line: where git merged two it says of some files what each side says."""
+    entries: list[tuple[str, Any]] = []
+    with contextlib.suppress(ValueError, LookupError, TypeError, AttributeError):
+        data = json.loads(text)
+        # As archgen writes it, each entry on a line: then no name stands there twice.
+        if text.count("\n") == len(data["files"]) + _FRAME_COUNT:
+            return [("archgen", data["archgen"]), *data["files"].items()]
+    try:
+        for line in text.splitlines():
+            if line.strip() not in _FRAME_LINES and not line.startswith(_MARKERS):
+                entries += json.loads(f"{{{line.strip().removesuffix(',')}}}").items()
+    except ValueError:  # somebody's tool laid it out anew
+        data = json.loads(text)
+        entries = [("archgen", data["archgen"]), *data["files"].items()]
+    return sorted(entries, key=lambda each: each[0] not in _HEAD_KEYS)
+
+
+def _join_entries(first: RecordedFile, second: RecordedFile) -> RecordedFile:
+    """Return what is known of a file that two branches wrote: either text, and the meanings on which both agree."""
+    meanings = {name: each for name, each in first.meanings.items() if second.meanings.get(name, each) == each}
+    return RecordedFile(
+        first.digests | second.digests,
+        first.runs | second.runs,
+        first.executable or second.executable,
+        first.once or second.once,
+        first.kept or second.kept,
+        {**{name: each for name, each in second.meanings.items() if name not in first.meanings}, **meanings},
+        join_digests(split_digests(first.lines) | split_digests(second.lines)),
+        first.successor or second.successor,
+    )
+
+
+def digest_lines(data: bytes) -> frozenset[str]:
+    """Return short digests of the lines of a file; of what git puts between the sides of a conflict, none."""
+    lines = {line.strip() for line in data.splitlines() if not line.startswith(_MARKERS_IN_BYTES)} - {b""}
+    return frozenset(base64.b64encode(hashlib.sha256(line).digest()[:_LINE_BYTES]).decode() for line in lines)
+
+
+def join_digests(digests: frozenset[str]) -> str:
+    """Return digests of lines as a record has them."""
+    return "".join(sorted(digests))
+
+
+def split_digests(text: str) -> frozenset[str]:
+    """Return the digests of lines that a record has."""
+    return frozenset(text[i : i + _LINE_LETTERS] for i in range(0, len(text), _LINE_LETTERS))
+
+
+def holds_conflict(data: bytes) -> bool:
+    """Whether git's marks of a conflict stand in a file."""
+    lines = data.splitlines()
+    return any(line.startswith(b"<<<<<<< ") for line in lines) and any(line.startswith(b">>>>>>> ") for line in lines)
+
+
 def read_other_records(workspace: Path, backend: str) -> Mapping[str, str]:
     """Return the folded paths that other backends made in a workspace, with the name of the backend."""
-    folder = workspace / RECORD_FOLDER
-    names = sorted(path.stem for path in folder.glob("*.json")) if folder.is_dir() else []
     return {
         fold_file_path(path): name
-        for name in names
+        for name in _list_recorded_backends(workspace)
         if name != backend
         for path in read_run_record(workspace, name).files
     }
+
+
+def _list_recorded_backends(workspace: Path) -> list[str]:
+    folder = workspace / RECORD_FOLDER
+    return sorted(path.stem for path in folder.glob("*.json")) if folder.is_dir() else []
+
+
+def write_git_attributes(workspace: Path, old_text: str) -> str:
+    """Return a workspace's .gitattributes, by which git merges what is generated without a conflict, since a run makes it anew.
+
+    What somebody wrote into it stays; without it the text is empty where nothing is generated.
+    """
+    paths = {
+        path
+        for name in _list_recorded_backends(workspace)
+        for path, file in read_run_record(workspace, name).files.items()
+        if not file.is_own and _PLAIN_PATH.match(path)
+    }
+    attributes = [f"/{path} merge=union linguist-generated" for path in sorted({*paths, ".gitattributes"})]
+    lines = [_ATTRIBUTES_BEGIN, *attributes, _ATTRIBUTES_END] if paths else []
+    before, begin, rest = old_text.partition(f"{_ATTRIBUTES_BEGIN}\n")
+    after = rest.partition(f"{_ATTRIBUTES_END}\n")[2] if begin else ""
+    gap = "\n" if before and not before.endswith("\n") else ""
+    return "".join((before, gap, *(f"{line}\n" for line in lines), after))
 
 
 def write_run_record(record: RunRecord) -> bytes:
@@ -92,13 +196,18 @@ def _read_file(path: str, entry: Mapping[str, Any]) -> RecordedFile:
     # A record can be edited: a path such as `../x` would let the next run remove files outside of the workspace.
     if explain_bad_path(path) or not all(isinstance(each, str) for each in (*digests, *runs)):
         raise ValueError
-    state = entry.get("state")
+    state, names = entry.get("state"), entry.get("names", {})
+    if not all(isinstance(each, str) for each in names.values()):
+        raise ValueError
     return RecordedFile(
         frozenset(digests),
         frozenset(runs),
         entry.get("executable") is True,
         state == "once",
         state == "kept",
+        names,
+        str(entry.get("lines", "")),
+        str(entry.get("becomes", "")),
     )
 
 
@@ -109,6 +218,12 @@ def _write_file(file: RecordedFile) -> dict[str, object]:
         entry["executable"] = True
     if file.is_own:
         entry["state"] = "once" if file.once else "kept"
+    if file.lines:
+        entry["lines"] = file.lines
+    if file.successor:
+        entry["becomes"] = file.successor
+    if file.meanings:
+        entry["names"] = dict(sorted(file.meanings.items()))
     return entry
 
 

@@ -3,30 +3,42 @@
 from __future__ import annotations
 
 import hashlib
-import re
 from collections import defaultdict
-from collections.abc import Collection, Iterable, Mapping
+from collections.abc import Collection, Iterable, Iterator, Mapping
 from dataclasses import dataclass, field, replace
 from typing import Literal
 
 from archgen.emit.workspace.disk_files import DiskFile, DiskReader, GeneratedFile, fold_file_path
-from archgen.emit.workspace.run_record import RecordedFile, RunRecord
+from archgen.emit.workspace.known_fits import KnownFits, digest_fit
+from archgen.emit.workspace.own_code import CodeFinding, CodeReport, has_lost_names, judge_own_code, read_contract
+from archgen.emit.workspace.run_record import (
+    RecordedFile,
+    RunRecord,
+    digest_lines,
+    holds_conflict,
+    join_digests,
+    split_digests,
+)
 
-FileVerb = Literal["new", "changed", "same", "removed", "yours", "left", "edited", "foreign", "blocked"]
+FileVerb = Literal["new", "changed", "merged", "same", "removed", "yours", "left", "edited", "foreign", "blocked"]
 """What is done with a file. The last three are not done: it stays as it is, and the run says why.
 
 `yours` are the user's own files, `left` are those that are no longer made, but were edited: they are the user's from now on.
 """
 CONFLICTS: frozenset[FileVerb] = frozenset({"edited", "foreign", "blocked"})
+STALE: frozenset[FileVerb] = frozenset({"new", "changed", "removed", "merged"})
+"""What has to be done so that a workspace is as the architecture says."""
 
 
 @dataclass(frozen=True, slots=True)
 class FileStep:
-    """What is done with one file. `note` says more: what is in the way, or which words a file of the user's lacks."""
+    """What is done with one file. `note` says more, such as what is in the way."""
 
     path: str
     verb: FileVerb
     note: str = ""
+    findings: tuple[CodeFinding, ...] = ()
+    """What is wrong with a file of the user's own."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -37,6 +49,8 @@ class UserChoices:
     kept: Collection[str] = ()
     removes_unmade: bool = True
     """Whether what is no longer made goes: not in spite of errors, since it may only be missing because of one."""
+    fits: KnownFits = field(default_factory=KnownFits)
+    """Which files of the user's own fitted before."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -65,13 +79,22 @@ class WorkspacePlan:
         """The files that should have been written, and were not."""
         return tuple(step for step in self.steps if step.verb in CONFLICTS)
 
+    @property
+    def has_unfit_code(self) -> bool:
+        """Whether code of the user's own does not fit what is generated."""
+        return any(not finding.is_note for step in self.steps for finding in step.findings)
+
 
 def plan_workspace(
-    record: RunRecord, run: str, files: Iterable[GeneratedFile], disk: DiskReader, choices: UserChoices
+    record: RunRecord,
+    run: str,
+    files: Iterable[GeneratedFile],
+    disk: DiskReader,
+    choices: UserChoices,
 ) -> WorkspacePlan:
     """Plan what a run of a backend does. `run` names the part that was asked for; the paths of `files` are sound."""
-    planner = _Planner(record, run, disk, choices)
     wanted_files = {file.path: file for file in files}
+    planner = _Planner(record, run, disk, choices, choices.fits, frozenset(wanted_files))
     # First what goes: a folder may take the place of a file, and a file that of a folder.
     for path, entry in record.files.items():
         if path not in wanted_files and choices.removes_unmade:
@@ -91,6 +114,8 @@ class _Planner:
     run: str
     disk: DiskReader
     choices: UserChoices
+    fits: KnownFits
+    wanted_paths: Collection[str]
     steps: list[FileStep] = field(default_factory=list)
     writes: dict[str, GeneratedFile] = field(default_factory=dict)
     modes: dict[str, int] = field(default_factory=dict)
@@ -98,6 +123,8 @@ class _Planner:
     vanished: list[str] = field(default_factory=list)
     entries: dict[str, RecordedFile] = field(default_factory=dict)
     known_digests: dict[str, set[str]] = field(default_factory=lambda: defaultdict(set))
+    _outlived: dict[str, RecordedFile] = field(default_factory=dict)
+    """Files of the user's own that nothing needs any more."""
 
     def __post_init__(self) -> None:
         for path, entry in self.old_record.files.items():
@@ -112,11 +139,11 @@ class _Planner:
             self.entries[path] = replace(entry, runs=other_runs)
             return
         on_disk = self.disk.read(path)
-        if on_disk.exists and entry.is_own:
-            self.steps.append(FileStep(path, "yours", "nothing that is generated needs it any more"))
+        if on_disk.exists and entry.is_own and not (entry.once and on_disk.digest in entry.digests):
+            self._outlived[path] = entry
         elif on_disk.exists and path in self.choices.kept:
             self.steps.append(FileStep(path, "left", "it is no longer made, and kept: it is yours now"))
-        elif on_disk.digest in entry.digests:
+        elif on_disk.digest in entry.digests or (on_disk.exists and self._is_merged(path, entry)):
             self.removals.append(path)
             self.steps.append(FileStep(path, "removed"))
         elif on_disk.exists:
@@ -135,18 +162,27 @@ class _Planner:
         elif not on_disk.exists:
             self._write(file, entry, digest, on_disk, "new")
         elif self._is_users_own(file, entry):
-            words = _find_missing_words(file, self.disk.read_data(file.path)) if file.expected_words else ()
-            self._keep_own(file, entry, digest, f"it lacks {', '.join(words)}" if words else "")
+            is_empty = entry is not None and on_disk.digest in entry.digests
+            self._keep_own(file, entry, digest, on_disk, is_empty=is_empty)
         elif file.path in self.choices.kept and not (entry and file.path in self.choices.overwritten):
-            self._keep_own(file, entry, digest, "")
+            self._keep_own(file, entry, digest, on_disk)
         elif on_disk.digest == digest:
             self._keep_same(file, entry, digest, on_disk)
         elif on_disk.digest in self.known_digests[fold_file_path(file.path)] or (
             entry and file.path in self.choices.overwritten
         ):
             self._write(file, entry, digest, on_disk, "changed")
+        elif entry and self._is_merged(file.path, entry, file.data):
+            self._write(file, entry, digest, on_disk, "merged")
         else:
             self._keep(file, entry, "edited" if entry else "foreign")
+
+    def _is_merged(self, path: str, entry: RecordedFile, new_data: bytes = b"") -> bool:
+        """Whether git made a file of two that archgen wrote: each of its lines is of one of them, or of the new one."""
+        data = self.disk.read_data(path)
+        if len(entry.digests) == 1 and not holds_conflict(data):
+            return False
+        return digest_lines(data) <= split_digests(entry.lines) | digest_lines(new_data)
 
     def _is_users_own(self, file: GeneratedFile, entry: RecordedFile | None) -> bool:
         was_taken_over = entry is not None and entry.kept and file.path not in self.choices.overwritten
@@ -167,40 +203,117 @@ class _Planner:
         self.writes[file.path] = file
         if on_disk.exists:
             self.modes[file.path] = _choose_mode(file, entry, on_disk)
-        self.entries[file.path] = self._record(file, entry, digest)
-        self.steps.append(FileStep(file.path, verb))
+        meanings = _judge(file, file.data, {}).meanings if file.once else {}
+        self.entries[file.path] = self._record(file, entry, digest, meanings)
+        was_deleted = verb == "new" and file.once and entry is not None
+        self.steps.append(
+            FileStep(file.path, verb, "it was gone, and is written anew: an empty one" if was_deleted else "")
+        )
 
     def _keep_same(self, file: GeneratedFile, entry: RecordedFile | None, digest: str, on_disk: DiskFile) -> None:
         mode = _choose_mode(file, entry, on_disk)
         if mode != on_disk.mode:
             self.modes[file.path] = mode
-        self.entries[file.path] = self._record(file, entry, digest)
+        self.entries[file.path] = self._record(file, entry, digest, entry.meanings if entry else {})
         self.steps.append(FileStep(file.path, "changed" if mode != on_disk.mode else "same"))
 
-    def _keep_own(self, file: GeneratedFile, entry: RecordedFile | None, digest: str, note: str) -> None:
+    def _keep_own(
+        self, file: GeneratedFile, entry: RecordedFile | None, digest: str, on_disk: DiskFile, *, is_empty: bool = False
+    ) -> None:
         own = self._record(file, entry, digest)
         if entry:
             own = replace(own, digests=entry.digests)
-        self.entries[file.path] = replace(own, once=file.once, kept=not file.once)
-        self.steps.append(FileStep(file.path, "yours", note))
+        report = CodeReport()
+        if file.once:
+            # What is empty was written for nothing.
+            meanings = entry.meanings if entry and not is_empty else {}
+            report = self._judge_own(file, on_disk.digest or "", meanings, entry.meanings if entry else {})
+        self.entries[file.path] = replace(own, once=file.once, kept=not file.once, meanings=report.meanings)
+        findings = report.findings
+        if is_empty and any(not each.is_note for each in findings):
+            message = (
+                f"is of an older model, and nobody wrote into it: take it away for a new one ({findings[0].message})"
+            )
+            findings = (CodeFinding(message, findings[0].line, findings[0].column),)
+        self.steps.append(FileStep(file.path, "yours", findings=findings))
+
+    def _judge_own(
+        self, file: GeneratedFile, disk_digest: str, meanings: Mapping[str, str], last_meanings: Mapping[str, str]
+    ) -> CodeReport:
+        """Judge a file, unless it is known to fit, and to mean what it meant in the last run."""
+        fit = digest_fit(file, disk_digest, meanings, last_meanings)
+        if self.fits.is_known(fit):
+            return CodeReport((), last_meanings)
+        report = _judge(file, self.disk.read_data(file.path), meanings, self._list_helpers(file.path))
+        if (
+            not report.findings
+            and report.meanings == last_meanings
+            and not has_lost_names(file.offered_words, meanings)
+        ):
+            self.fits.add(fit)
+        return report
 
     def _keep(self, file: GeneratedFile, entry: RecordedFile | None, verb: FileVerb, note: str = "") -> None:
         if entry:
             self.entries[file.path] = replace(entry, runs=entry.runs | {self.run})
         self.steps.append(FileStep(file.path, verb, note))
 
-    def _record(self, file: GeneratedFile, entry: RecordedFile | None, digest: str) -> RecordedFile:
+    def _record(
+        self, file: GeneratedFile, entry: RecordedFile | None, digest: str, meanings: Mapping[str, str] = {}
+    ) -> RecordedFile:
         runs = (entry.runs if entry else frozenset[str]()) | {self.run}
-        return RecordedFile(frozenset({digest}), runs, file.executable, file.once)
+        is_as_before = entry is not None and bool(entry.lines) and entry.digests == {digest}
+        lines = "" if file.once else entry.lines if entry and is_as_before else join_digests(digest_lines(file.data))
+        return RecordedFile(frozenset({digest}), runs, file.executable, file.once, meanings=meanings, lines=lines)
+
+    def _list_helpers(self, path: str) -> Iterator[tuple[str, bytes]]:
+        """Yield the Python files of the user's beside one of his own, and below, with their bytes."""
+        folder, _, name = path.rpartition("/")
+        if folder and name.endswith(".py"):
+            for each in self.disk.list_below(folder):
+                is_others = each not in self.wanted_paths and each not in self.old_record.files
+                if is_others and each.endswith(".py") and self.disk.read(each).exists:
+                    yield each, self.disk.read_data(each)
+
+    def _find_successor(self, path: str, entry: RecordedFile) -> str:
+        """Return the new file of the user's own that has most names in common with one, and its name; empty where none has any.
+
+        It stays that one until somebody writes into it.
+        """
+        known = self.old_record.files.get(entry.successor)
+        if known and entry.successor in self.wanted_paths:
+            return entry.successor if self.disk.read(entry.successor).digest in known.digests else ""
+        likeness = {
+            each: (
+                len(self.entries[each].meanings.keys() & entry.meanings.keys()),
+                each.rpartition("/")[2] == path.rpartition("/")[2],
+            )
+            for each, file in self.writes.items()
+            if file.once and each not in self.old_record.files
+        }
+        best = max(likeness, key=lambda each: (likeness[each], each), default="")
+        return best if best and likeness[best][0] else ""
 
     def finish(self) -> WorkspacePlan:
         """Return the plan."""
         old_files = self.old_record.files
+        for path, entry in self._outlived.items():
+            successor = self._find_successor(path, entry)
+            message = "nothing that is generated needs it any more"
+            if successor:
+                self.entries[path] = replace(entry, successor=successor)
+                words = f"{message}; it may become {successor}, which is empty: move what you wrote there, and take this file away"
+                self.steps.append(FileStep(path, "yours", findings=(CodeFinding(words, 1, 1),)))
+            else:
+                self.steps.append(FileStep(path, "yours", message))
         intended_files = dict(self.entries)
         for path in self.writes:
             if path in old_files:
                 both_digests = self.entries[path].digests | old_files[path].digests
-                intended_files[path] = replace(self.entries[path], digests=both_digests)
+                both_lines = join_digests(
+                    split_digests(self.entries[path].lines) | split_digests(old_files[path].lines)
+                )
+                intended_files[path] = replace(self.entries[path], digests=both_digests, lines=both_lines)
         intended_files |= {path: old_files[path] for path in self.removals}
         return WorkspacePlan(
             tuple(sorted(self.steps, key=lambda step: step.path)),
@@ -221,13 +334,10 @@ def _choose_mode(file: GeneratedFile, entry: RecordedFile | None, on_disk: DiskF
     return on_disk.mode & ~0o111 if entry and entry.executable else on_disk.mode
 
 
-def _find_missing_words(file: GeneratedFile, data: bytes) -> tuple[str, ...]:
-    """Return the words that a file of the user's should hold, and does not."""
-    text = data.decode("utf-8", "replace")
-    found_words = set(re.findall(r"\w+", text))
-    return tuple(word for word in file.expected_words if word not in found_words and not _holds_phrase(text, word))
-
-
-def _holds_phrase(text: str, phrase: str) -> bool:
-    """Whether a text holds words with what stands between them: `arm.move`."""
-    return not phrase.isidentifier() and re.search(rf"(?<!\w){re.escape(phrase)}(?!\w)", text) is not None
+def _judge(
+    file: GeneratedFile, data: bytes, recorded: Mapping[str, str], helpers: Iterable[tuple[str, bytes]] = ()
+) -> CodeReport:
+    """Hold the user's own text of a file against what is generated around it."""
+    if not (file.expected_words or file.offered_words):
+        return CodeReport()
+    return judge_own_code(file.path, data, read_contract(file.expected_words, file.offered_words), recorded, helpers)

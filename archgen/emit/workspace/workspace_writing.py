@@ -14,7 +14,12 @@ from collections.abc import Iterable, Iterator
 from pathlib import Path
 
 from archgen.emit.file_tree import OutputError, lock_folder
-from archgen.emit.workspace.run_record import RECORD_FOLDER, RunRecord, write_run_record
+from archgen.emit.workspace.run_record import (
+    RECORD_FOLDER,
+    RunRecord,
+    write_git_attributes,
+    write_run_record,
+)
 from archgen.emit.workspace.workspace_plan import WorkspacePlan
 from archgen.regular_files import holds_bytes
 
@@ -52,7 +57,9 @@ def carry_out(plan: WorkspacePlan, workspace: Path) -> None:
             _move_in(plan, workspace, staging)
         for path in plan.vanished:
             _prune_folders(workspace, path)
-        _put_record(plan.record, workspace, staging)
+        is_new = not (workspace / RECORD_FOLDER / ".gitattributes").exists()
+        if (_put_record(plan.record, workspace, staging) or is_new) and _is_in_repository(workspace):
+            _put_attributes(workspace, staging)
     finally:
         shutil.rmtree(staging, ignore_errors=True)
 
@@ -102,18 +109,45 @@ def _prune_folders(workspace: Path, path: str) -> None:
             parent.rmdir()
 
 
-def _put_record(record: RunRecord, workspace: Path, staging: Path) -> None:
-    """Replace the record, unless it says the same already. A backend that has no file here has no record."""
+def _put_record(record: RunRecord, workspace: Path, staging: Path) -> bool:
+    """Replace the record, unless it says the same already. A backend that has no file here has no record.
+
+    Return whether there was something to do.
+    """
     path = workspace / RECORD_FOLDER / f"{record.backend}.json"
     if not record.files:
         path.unlink(missing_ok=True)
-        return
-    data = write_run_record(record)
+        return True
+    return _replace(path, write_run_record(record), staging)
+
+
+def _put_attributes(workspace: Path, staging: Path) -> None:
+    """Tell git how to merge what is generated, and the records of it."""
+    own_file, file = workspace / RECORD_FOLDER / ".gitattributes", workspace / ".gitattributes"
+    old_text = file.read_text("utf-8", "surrogateescape") if file.is_file() else ""
+    text = "" if file.is_symlink() else write_git_attributes(workspace, old_text)
+    if text and text != old_text:
+        _replace(file, text.encode("utf-8", "surrogateescape"), staging)
+    elif old_text and not text and not file.is_symlink():
+        file.unlink()
+    if any(own_file.parent.glob("*.json")):
+        _replace(own_file, b"*.json merge=union linguist-generated\n", staging)
+    else:
+        own_file.unlink(missing_ok=True)
+
+
+def _is_in_repository(workspace: Path) -> bool:
+    resolved = workspace.resolve()
+    return any(os.path.lexists(folder / ".git") for folder in (resolved, *resolved.parents))
+
+
+def _replace(path: Path, data: bytes, staging: Path) -> bool:
     if holds_bytes(path, data):
-        return
+        return False
     staging.mkdir(exist_ok=True)
     (staging / "record").write_bytes(data)
     os.replace(staging / "record", path)  # noqa: PTH105
+    return True
 
 
 def _refuse_closed_folders(plan: WorkspacePlan, workspace: Path) -> None:

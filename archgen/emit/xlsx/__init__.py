@@ -8,12 +8,11 @@ from __future__ import annotations
 
 import io
 import re
-import zipfile
 from collections.abc import Iterable, Iterator, Mapping
 from datetime import datetime
 from typing import Any
 
-from archgen.emit.own_file_marks import PROGRAM_NAME, PROGRAM_PART
+from archgen.emit.office_package import STAMP, replace_forbidden, sign_package
 from archgen.frozen import dataclass, field
 from archgen.views.shapes import Facts, Inlines, Outline, Section, Table
 
@@ -21,12 +20,9 @@ _MAX_NAME = 31
 _MAX_CELL = 32_767
 """Characters that a cell of Excel holds; XlsxWriter leaves out longer texts."""
 _FORBIDDEN_NAME = re.compile(r"[\[\]:*?/\\]")
-_FORBIDDEN_TEXT = re.compile("[\x00-\x08\x0b\x0c\x0e-\x1f\ud800-\udfff\ufffe\uffff]")
 _NUMBER = re.compile(r"-?[0-9]{1,15}(?:\.[0-9]{1,9})?")
 _MIN_WIDTH, _MAX_WIDTH = 8, 60
 _PLACE = "Section"
-_STAMP = (1980, 1, 1, 0, 0, 0)
-_APPLICATION = re.compile(r"<Application>[^<]*</Application>")
 
 
 class XlsxWriterError(Exception):
@@ -54,10 +50,10 @@ def write_workbook(outline: Outline) -> bytes:
     # Text that begins with = + - or @ is text: from a stranger's project it must never run as a formula.
     options = {"in_memory": True, "strings_to_formulas": False, "strings_to_urls": False, "strings_to_numbers": False}
     workbook = xlsxwriter.Workbook(stream, options)
-    workbook.set_properties({"title": _replace_forbidden(outline.title), "created": datetime(*_STAMP[:3])})  # noqa: DTZ001 - no clock
+    workbook.set_properties({"title": replace_forbidden(outline.title), "created": datetime(*STAMP[:3])})  # noqa: DTZ001 - no clock
     names: set[str] = set()
     for content in collect_sheets(outline):
-        base = _FORBIDDEN_NAME.sub(" ", _replace_forbidden(content.title)).strip("' ")[:_MAX_NAME] or "Table"
+        base = _FORBIDDEN_NAME.sub(" ", replace_forbidden(content.title)).strip("' ")[:_MAX_NAME] or "Table"
         name, number = base, 1
         while name.casefold() in names:
             number += 1
@@ -68,7 +64,7 @@ def write_workbook(outline: Outline) -> bytes:
     if not names:
         workbook.add_worksheet("No tables")
     workbook.close()
-    return _sign_package(stream.getvalue())
+    return sign_package(stream.getvalue())
 
 
 def collect_sheets(outline: Outline) -> tuple[SheetContent, ...]:
@@ -108,7 +104,7 @@ def _write_sheet(workbook: Any, content: SheetContent, name: str) -> None:  # no
     wrapped = workbook.add_format({"text_wrap": True, "valign": "top"})
     for at, (title, is_number) in enumerate(content.columns.items()):
         texts = [_join_text(row.get(title, "")) for row in content.rows]
-        sheet.write_string(0, at, _replace_forbidden(title), heading)
+        sheet.write_string(0, at, replace_forbidden(title), heading)
         for line, text in enumerate(texts, start=1):
             if is_number and _NUMBER.fullmatch(text):
                 sheet.write_number(line, at, float(text), wrapped)
@@ -124,24 +120,4 @@ def _join_text(cell: Inlines | str) -> str:
     text = (
         cell if isinstance(cell, str) else "".join(f"\n{part.text}" if part.line_break else part.text for part in cell)
     )
-    return _replace_forbidden(text)[:_MAX_CELL]
-
-
-def _replace_forbidden(text: str) -> str:
-    """Return text with a visible sign for each character that XML cannot hold."""
-    return _FORBIDDEN_TEXT.sub("\ufffd", text)
-
-
-def _sign_package(data: bytes) -> bytes:
-    """Return a workbook that names the program that wrote it, as all that do so: by this its next version may replace it."""
-    stream = io.BytesIO()
-    with zipfile.ZipFile(io.BytesIO(data)) as source, zipfile.ZipFile(stream, "w") as target:
-        for name in source.namelist():
-            content = source.read(name)
-            if name == PROGRAM_PART:
-                application = f"<Application>{PROGRAM_NAME}</Application>"
-                content = _APPLICATION.sub(application, content.decode()).encode()
-            info = zipfile.ZipInfo(name, _STAMP)
-            info.create_system = 0  # else the bytes would tell the system that wrote them
-            target.writestr(info, content, zipfile.ZIP_DEFLATED, compresslevel=6)
-    return stream.getvalue()
+    return replace_forbidden(text)[:_MAX_CELL]

@@ -251,6 +251,7 @@ class _GroupDeclarer:
                 and (known.names is resolver.all_names or resolver.gives_answers(known.answers, known.names))
                 and wiring.brings_same(known.component)
                 and known.source_media == wiring.list_source_media(known.component)
+                and resolver.tell_again(known.references)
             ):
                 wiring.take_over(known.component)
                 self.owners[component_id] = known.component.owners
@@ -260,7 +261,9 @@ class _GroupDeclarer:
         # The outputs are those of another version only where nothing else is said of them: see `_recall_ports`.
         if heard.is_flawless:
             media, owners = wiring.list_source_media(component), self.owners[group_id]
-            linked = LinkedLeaf(entry, outputs, owners, media, resolver.all_names, tuple(heard.answers), component)
+            linked = LinkedLeaf(
+                entry, outputs, owners, media, resolver.all_names, tuple(heard.answers), component, heard.references
+            )
             self.memory.leaves.keep_part(component_id, linked)
         return component
 

@@ -18,9 +18,10 @@ from archgen.diagnostics.source_span import NO_SPAN, Span
 from archgen.language.language_tables import KEYS, OFFERS, SECTION_KINDS
 from archgen.link import mapping_values, sanity_checks
 from archgen.link.declare.timing_declaration import read_deadline
+from archgen.link.promise_reading import read_day
 from archgen.link.reference_resolution import SECTIONS_OF_PLAIN_NAMES, ReferenceResolver
 from archgen.link.value_readers import find_type, find_value_reader, list_held_keys, read_element, store_value
-from archgen.model.architecture import GlossaryTerm, Partner
+from archgen.model.architecture import GlossaryTerm, Milestone, Partner
 from archgen.model.deployment import Host, Link, Resource
 from archgen.model.element_annotations import PropertyDeclaration, read_figure
 from archgen.model.path_resolver import ElementRef
@@ -166,6 +167,7 @@ def find_declarer(kind: str, key: str) -> KeyDeclarer | None:
 
 DECLARED_CLASSES: Mapping[str, type] = {
     "partner": Partner,
+    "milestone": Milestone,
     "requirement": Requirement,
     "property_declaration": PropertyDeclaration,
     "host": Host,
@@ -193,6 +195,10 @@ def _read_positive(
     body: MappingNode, key: str, element_id: str, resolver: ReferenceResolver, dimension: str
 ) -> Quantity | None:
     return sanity_checks.read_positive(body, key, dimension, element_id, resolver.diagnostics)
+
+
+def _read_day(body: MappingNode, key: str, element_id: str, resolver: ReferenceResolver) -> str | None:
+    return read_day(body, key, element_id, resolver.diagnostics)
 
 
 def read_link_ends(
@@ -279,6 +285,7 @@ NAMING_TYPES = {"id": _resolve_id, "requirement_ids": _resolve_ids}
 DECLARERS: Mapping[str, KeyDeclarer] = {
     "bandwidth": partial(_read_positive, dimension="bandwidth"),
     "chain_deadline": read_deadline,
+    "day": _read_day,
     "link.connects": read_link_ends,
     "link.latency": sanity_checks.read_latency,
     "property_declaration.range": read_range,

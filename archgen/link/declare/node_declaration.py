@@ -88,6 +88,7 @@ def _recall_node(
             and known.shared_flags == shared_flags
             and (known.names is resolver.all_names or resolver.gives_answers(known.answers, known.names))
             and (not known.node.container or containers[known.node.container].host == known.container_host)
+            and resolver.tell_again(known.references)
         ):
             return known.node
     with resolver.listen() as heard:
@@ -95,7 +96,7 @@ def _recall_node(
     if heard.is_flawless:
         host = containers[node.container].host if node.container else None
         answers = tuple(heard.answers)
-        linked = LinkedNode(entry, components, shared_flags, host, resolver.all_names, answers, node)
+        linked = LinkedNode(entry, components, shared_flags, host, resolver.all_names, answers, node, heard.references)
         memory.nodes.keep_part(node_id, linked)
     return node
 

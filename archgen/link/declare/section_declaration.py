@@ -19,6 +19,7 @@ from archgen.link.value_readers import read_element, read_values
 from archgen.model.agreed_terms import Agreement, Signature
 from archgen.model.architecture import Chain, Policy, ProjectInfo, SourceDemand, View, Waypoint
 from archgen.model.conform_settings import AcceptedDifference, ConformSettings
+from archgen.model.generate_settings import GenerateSettings
 from archgen.model.path_resolver import ElementRef
 from archgen.model.review_settings import BREAK_CATEGORIES, AcceptedChange, BreakPolicy, ReviewSettings
 from archgen.model.source_repository import DEFAULT_BRANCH, SourceRepository
@@ -124,6 +125,22 @@ def declare_conform(root: MappingNode) -> ConformSettings:
             and (rules := _read_rules(values))
             and (reason := mapping_values.get_text(values, "reason"))
         ),
+    )
+
+
+def declare_generate(root: MappingNode) -> GenerateSettings:
+    """Declare which backends write the workspace of a project."""
+    body = mapping_values.get_mapping(root, "generate")
+    return GenerateSettings(
+        into=mapping_values.get_text(body, "into"),
+        backends={
+            name: {
+                option.key: option.value.text
+                for option in options
+                if isinstance(option.value, ScalarNode) and option.value.value is not None
+            }
+            for name, _, options in mapping_values.iterate_elements(body, "backends")
+        },
     )
 
 

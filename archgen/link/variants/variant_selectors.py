@@ -16,8 +16,8 @@ from archgen.model.selector_evaluation import SelectorEvaluator
 from archgen.model.selector_parser import parse_selector, split_selector
 from archgen.syntax.yaml_tree import MappingEntry, MappingNode, ScalarNode, list_entries
 
-_SELECTOR_SECTIONS = ("views", "policies")
-_SELECTOR_KEYS = frozenset({"show", "from", "to", "of", "inputs_from", "outputs_to"})
+_SELECTOR_SECTIONS = ("views", "milestones", "policies")
+_SELECTOR_KEYS = frozenset({"show", "needs", "from", "to", "of", "inputs_from", "outputs_to"})
 
 
 class SelectedElements(NamedTuple):
@@ -76,7 +76,7 @@ def _find_span(selector: ScalarNode, start: int, end: int) -> Span:
 
 
 def prune_selectors(root: MappingNode, removed: RemovedElements, evaluator: SelectorEvaluator) -> MappingNode:
-    """Return a merged project whose views and policies name nothing that is gone; those that named nothing else go too."""
+    """Return a merged project whose views, milestones and policies name nothing that is gone; those that named nothing else go too."""
 
     def prune(section: MappingEntry) -> MappingEntry:
         return section.change_each(lambda holder: _prune_holder(holder, removed, evaluator))

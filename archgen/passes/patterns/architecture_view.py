@@ -5,11 +5,11 @@ Worked out from the tree when it is asked for, and again after an edit of it, fo
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 
 from archgen.link.mapping_values import list_scalars
 from archgen.model.generic_names import read_generic_name
-from archgen.passes.patterns.matching import IndexToken
+from archgen.passes.patterns.matching import COMPONENTS, IndexToken
 from archgen.passes.patterns.pattern_shapes import ComponentBody, PortReference, ViewValue
 from archgen.passes.patterns.type_layers import Layer, TypeLayers
 from archgen.passes.patterns.view_elements import (
@@ -31,10 +31,11 @@ class ArchitectureView:
     """The view of a tree that is edited: say what was edited with `note_edit`."""
 
     def __init__(self, tree: ProjectTree) -> None:
-        """Take the tree of a merged project."""
         self.tree = tree
         self.elements: dict[str, ViewElement] = {}
         self._keys: tuple[str, ...] | None = None
+        self._facts: Mapping[str, Mapping[str, dict[str, ViewValue]]] = {}
+        self._hosts: Mapping[str, str] = {}
         self._index = ComponentIndex(self.get_component)
         self._bodies: dict[str, dict[str, ViewValue]] = {}
         self._expanded: dict[str, MappingNode] = {}
@@ -53,11 +54,21 @@ class ArchitectureView:
 
     # What rules ask.
 
-    def list_components(self) -> Sequence[str]:
-        """Return the paths of all components, in order."""
+    def list_elements(self, section: str) -> Sequence[str]:
+        """Return the paths of all components, or the names of what stands in another section, in order."""
+        if section == "types":
+            return self.types.list_names()
+        if section != COMPONENTS:
+            return tuple(self._facts.get(section, ()))
         if self._keys is None:
             self._keys = tuple(self.elements)
         return self._keys
+
+    def get_element(self, section: str, name: str) -> dict[str, ViewValue] | None:
+        """Return what an element of a section has, None where there is none."""
+        if section == COMPONENTS:
+            return self.get_component(name)
+        return self.get_type(name) if section == "types" else self._facts.get(section, {}).get(name)
 
     def get_component(self, path: str) -> dict[str, ViewValue] | None:
         """Return what a component has, None where there is none."""
@@ -75,10 +86,6 @@ class ArchitectureView:
         """Return how many components the index knows by a token."""
         return self._index.count_having(token)
 
-    def list_types(self) -> Sequence[str]:
-        """Return the names of all conceptual types, in order."""
-        return self.types.list_names()
-
     def get_type(self, name: str) -> dict[str, ViewValue] | None:
         """Return what a conceptual type has, None where there is none."""
         return self.types.get_body(name)
@@ -90,6 +97,25 @@ class ArchitectureView:
         key = name if name in self.elements else self.type_keys.get(read_generic_name(name).base, "")
         names = {each.type_name for each in self.list_layers(key)} if key in self.elements else set()
         return any(each is not None and type_name in (each, self.type_keys.get(each)) for each in names)
+
+    def show_facts(self, facts: Mapping[str, Mapping[str, dict[str, ViewValue]]], hosts: Mapping[str, str]) -> None:
+        """Show what was found out about the linked project: other sections, and the host of each component."""
+        for key in self.elements:
+            if hosts.get(key) != self._hosts.get(key):
+                self._mark_stale(key)
+        self._facts, self._hosts = facts, hosts
+
+    def find_key(self, component_id: str) -> str | None:
+        """Return the path that rules know a component by: of what stands inside of an instance, that in its type."""
+        if component_id in self.elements:
+            return component_id
+        parent, _, name = component_id.rpartition(".")
+        outer = self.find_key(parent) if parent else None
+        for layer in self.list_layers(outer) if outer is not None else ():
+            holder = self.type_keys.get(layer.type_name) if layer.type_name else outer
+            if f"{holder}.{name}" in self.elements:
+                return f"{holder}.{name}"
+        return None
 
     # What edits ask.
 
@@ -197,6 +223,8 @@ class ArchitectureView:
         body.path = element.key
         if element.parent is not None:
             body["in"] = element.parent
+        if element.key in self._hosts:
+            body["host"] = self._hosts[element.key]
         # What a type's ports pass on from inside is inside of what is made from it, too.
         moves = {
             self.type_keys[each.type_name]: element.key for each in self.list_layers(element.key) if each.type_name

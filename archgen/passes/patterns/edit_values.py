@@ -32,7 +32,6 @@ class EditError(Exception):
     """What a rule writes cannot be written. Carries what is wrong, and what to do."""
 
     def __init__(self, message: str, help_line: str | None = None) -> None:
-        """Take what to say."""
         super().__init__(message)
         self.help_line = help_line
 

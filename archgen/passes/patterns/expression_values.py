@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import re
 from collections.abc import Mapping, Sequence
-from typing import Protocol
 
 from archgen.compose.type_expressions import bind_type_name
 from archgen.model.message_types import PART_KEYS
 from archgen.passes.patterns.expressions import Call, Condition, ListOperand, Operand, TextOperand
+from archgen.passes.patterns.matching import COMPONENTS, PatternView
 from archgen.passes.patterns.pattern_shapes import INNER_KEY, Anything, Bindings, ComponentBody, Variable, ViewValue
 from archgen.passes.patterns.value_matching import join_words, resolve_text
 
@@ -23,28 +23,12 @@ class WrongValueError(Exception):
     """An expression has no value: a function was given what it cannot take."""
 
 
-class NamedElements(Protocol):
-    """What expressions ask a view."""
-
-    def get_component(self, path: str) -> dict[str, ViewValue] | None:
-        """Return what a component has, None where there is none."""
-        ...
-
-    def get_type(self, name: str) -> dict[str, ViewValue] | None:
-        """Return what a conceptual type has, None where there is none."""
-        ...
-
-    def is_a(self, name: str, type_name: str) -> bool:
-        """Whether a type, or a component, is one, or made from it."""
-        ...
-
-
-def is_condition_true(comparison: Condition, bindings: Bindings, view: NamedElements) -> bool:
+def is_condition_true(comparison: Condition, bindings: Bindings, view: PatternView) -> bool:
     """Whether a comparison is true."""
     return _compare_sides(comparison, bindings, view) != comparison.is_negated
 
 
-def _compare_sides(comparison: Condition, bindings: Bindings, view: NamedElements) -> bool:
+def _compare_sides(comparison: Condition, bindings: Bindings, view: PatternView) -> bool:
     left = comparison.left
     if not comparison.operator:
         name, wanted = (
@@ -73,7 +57,7 @@ def _has_value(holder: ViewValue, value: ViewValue) -> bool:
     return isinstance(holder, (dict, str)) and isinstance(value, str) and value in holder
 
 
-def evaluate_operand(operand: Operand, bindings: Bindings, view: NamedElements) -> ViewValue:  # noqa: C901, PLR0911 - one for each function
+def evaluate_operand(operand: Operand, bindings: Bindings, view: PatternView) -> ViewValue:  # noqa: C901, PLR0911 - one for each function
     """Return what an operand stands for. Raise WrongValueError."""
     if isinstance(operand, TextOperand):
         if isinstance(operand.pattern, Variable):
@@ -83,14 +67,10 @@ def evaluate_operand(operand: Operand, bindings: Bindings, view: NamedElements) 
         return [evaluate_operand(item, bindings, view) for item in operand.items]
     values = [evaluate_operand(item, bindings, view) for item in operand.arguments]
     if operand.function == "specialise":
-        stands_for = {
-            _ask_text(evaluate_operand(name, bindings, view), operand): _ask_text(
-                evaluate_operand(value, bindings, view), operand
-            )
-            for name, value in operand.names
-        }
+        pairs = ((evaluate_operand(side, bindings, view) for side in pair) for pair in operand.names)
+        stands_for = dict([_ask_text(side, operand) for side in pair] for pair in pairs)
         name = values[0]
-        body = (view.get_component(name) or view.get_type(name)) if isinstance(name, str) else name
+        body = _find_element(name, view) if isinstance(name, str) else name
         if not isinstance(body, dict):
             message = (
                 "`specialise` takes a type by its name, or all that it has: `$body` in `components: {$name: $body}`"
@@ -141,10 +121,16 @@ def _read_text(operand: TextOperand, bindings: Bindings) -> str:
     return text
 
 
-def _find_free_name(name: str, view: NamedElements) -> str:
+def _find_element(name: str, view: PatternView) -> dict[str, ViewValue] | None:
+    """Return what a component or a conceptual type has, None where neither has the name."""
+    body = view.get_element(COMPONENTS, name)
+    return view.get_element("types", name) if body is None else body
+
+
+def _find_free_name(name: str, view: PatternView) -> str:
     """Return a name that no component or conceptual type has: the name itself, else with a number behind it."""
     number, free_name = 1, name
-    while view.get_component(free_name) is not None or view.get_type(free_name) is not None:
+    while _find_element(free_name, view) is not None:
         number += 1
         free_name = f"{name}_{number}"
     return free_name

@@ -35,7 +35,6 @@ class ExpressionError(Exception):
     """A text is no expression. Carries what is wrong, and what to do."""
 
     def __init__(self, message: str, help_line: str | None = None) -> None:
-        """Take what to say."""
         super().__init__(message)
         self.help_line = help_line
 
@@ -177,10 +176,10 @@ class _Reader:
         self._at += 1
         if word == "[":
             items = list(self._read_items("]"))
-            if not all(isinstance(item, _OPERANDS) for item in items):
+            if not all(isinstance(item, OPERANDS) for item in items):
                 message = f"a list has no names: `=` is too much in `{self._text}`"
                 raise ExpressionError(message)
-            return ListOperand(tuple(item for item in items if isinstance(item, _OPERANDS)))
+            return ListOperand(tuple(item for item in items if isinstance(item, OPERANDS)))
         if word.startswith(_QUOTES):
             if len(word) == 1:
                 message = f"a quote is not closed in `{self._text}`"
@@ -198,8 +197,8 @@ class _Reader:
             raise ExpressionError(message, guess or f"there are {', '.join(f'`{each}`' for each in known_functions)}")
         self._at += 1
         items = list(self._read_items(")"))
-        arguments = tuple(item for item in items if isinstance(item, _OPERANDS))
-        names = tuple(item for item in items if not isinstance(item, _OPERANDS))
+        arguments = tuple(item for item in items if isinstance(item, OPERANDS))
+        names = tuple(item for item in items if not isinstance(item, OPERANDS))
         least, most = known_functions[function]
         if len(arguments) < least or (most is not None and len(arguments) > most):
             asked = f"{least}" if least == most else f"at least {least}"
@@ -239,4 +238,4 @@ class _Reader:
             raise ExpressionError(message, "texts with blanks stand in quotes")
 
 
-_OPERANDS = (TextOperand, ListOperand, Call)
+OPERANDS = (TextOperand, ListOperand, Call)

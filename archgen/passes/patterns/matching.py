@@ -25,6 +25,8 @@ from archgen.passes.patterns.value_matching import MatchBudget, match_value, res
 
 INDEXED_DEPTH = 3
 """So deep below a component its keys and texts are found by the index: `inputs`, the port, its `type`."""
+COMPONENTS = "components"
+"""The section of components, the only one with an index."""
 IndexToken = tuple[str, ...]
 """What the index knows a component by: `(key,)` for a key that it has, `(key, text)` for a text below a key."""
 
@@ -32,12 +34,12 @@ IndexToken = tuple[str, ...]
 class PatternView(Protocol):
     """What rules see of an architecture."""
 
-    def list_components(self) -> Sequence[str]:
-        """Return the paths of all components, in order."""
+    def list_elements(self, section: str) -> Sequence[str]:
+        """Return the paths or names of all that stands in a section (`components`, `types`, ...), in order."""
         ...
 
-    def get_component(self, path: str) -> dict[str, ViewValue] | None:
-        """Return what a component has, None where there is none."""
+    def get_element(self, section: str, name: str) -> dict[str, ViewValue] | None:
+        """Return what an element of a section has, None where there is none."""
         ...
 
     def find_having(self, token: IndexToken) -> Sequence[str]:
@@ -48,20 +50,22 @@ class PatternView(Protocol):
         """Return how many components the index knows by a token."""
         ...
 
-    def list_types(self) -> Sequence[str]:
-        """Return the names of all conceptual types, in order."""
+    def is_a(self, name: str, type_name: str) -> bool:
+        """Whether a type, or a component, is one, or made from it."""
         ...
 
-    def get_type(self, name: str) -> dict[str, ViewValue] | None:
-        """Return what a conceptual type has, None where there is none."""
-        ...
+
+class SectionEntry(NamedTuple):
+    """What a rule looks for in a section: one element, by its key."""
+
+    section: str
+    entry: PatternEntry
 
 
 class ViewPattern(NamedTuple):
-    """What a rule looks for: components and conceptual types, each by key."""
+    """What a rule looks for: components first, then conceptual types and the rest."""
 
-    components: tuple[PatternEntry, ...] = ()
-    types: tuple[PatternEntry, ...] = ()
+    entries: tuple[SectionEntry, ...] = ()
 
 
 def list_tokens(body: Mapping[str, ViewValue], depth: int = INDEXED_DEPTH) -> Iterator[IndexToken]:
@@ -90,8 +94,7 @@ def match_view(
 
     The variables in `distinct` bind different components.
     """
-    todo = [("component", entry) for entry in pattern.components] + [("type", entry) for entry in pattern.types]
-    yield from _Search(view, budget, distinct).match_entries(tuple(todo), bindings)
+    yield from _Search(view, budget, distinct).match_entries(pattern.entries, bindings)
 
 
 class _Search(NamedTuple):
@@ -99,53 +102,49 @@ class _Search(NamedTuple):
     budget: MatchBudget
     distinct: frozenset[str]
 
-    def match_entries(self, todo: tuple[tuple[str, PatternEntry], ...], bindings: Bindings) -> Iterator[Bindings]:
+    def match_entries(self, todo: tuple[SectionEntry, ...], bindings: Bindings) -> Iterator[Bindings]:
         if not todo:
             yield bindings
             return
         # Chosen anew at each level: what is bound by then may leave another entry the fewest candidates, and each candidate
         # multiplies the rest of the search.
         chosen, token = self._choose_entry(todo, bindings)
-        kind, entry = todo[chosen]
+        section, entry = todo[chosen]
         rest = todo[:chosen] + todo[chosen + 1 :]
-        for name in self._list_candidates(kind, entry, token, bindings):
+        for name in self._list_candidates(section, entry, token, bindings):
             self.budget.spend()
-            bound = self._bind_key(kind, entry.key, name, bindings)
+            bound = self._bind_key(section, entry.key, name, bindings)
             if bound is None:
                 continue
-            body = self.view.get_component(name) if kind == "component" else self.view.get_type(name)
+            body = self.view.get_element(section, name)
             if body is None:
                 continue
             for inner in match_value(entry.value, body, bound, self.budget):
                 yield from self.match_entries(rest, inner)
 
-    def _bind_key(self, kind: str, key: Pattern, name: str, bindings: Bindings) -> Bindings | None:
+    def _bind_key(self, section: str, key: Pattern, name: str, bindings: Bindings) -> Bindings | None:
         if isinstance(key, Variable):
             if key.name in bindings:
                 if bindings[key.name] != name:
                     return None
             else:
                 bindings = {**bindings, key.name: name}
-            taken_by_other = kind == "component" and any(
+            taken_by_other = section == COMPONENTS and any(
                 other != key.name and bindings.get(other) == name for other in self.distinct
             )
             return None if taken_by_other else bindings
         return next(match_value(key, name, bindings, self.budget), None)
 
-    def _choose_entry(
-        self, todo: tuple[tuple[str, PatternEntry], ...], bindings: Bindings
-    ) -> tuple[int, IndexToken | None]:
+    def _choose_entry(self, todo: tuple[SectionEntry, ...], bindings: Bindings) -> tuple[int, IndexToken | None]:
         """Return which entry can mean the fewest elements, and the token of the index that finds these."""
         best: tuple[int, int, IndexToken | None] | None = None
-        for index, (kind, entry) in enumerate(todo):
+        for index, (section, entry) in enumerate(todo):
             self.budget.spend()
             if resolve_text(entry.key, bindings) is not None:
                 return index, None
             token = None
-            if kind == "type":
-                count = len(self.view.list_types())
-            else:
-                count = len(self.view.list_components())
+            count = len(self.view.list_elements(section))
+            if section == COMPONENTS:
                 for each in _list_pattern_tokens(entry.value, bindings, INDEXED_DEPTH):
                     having = self.view.count_having(each)
                     if having < count:
@@ -156,14 +155,12 @@ class _Search(NamedTuple):
         return best[1], best[2]
 
     def _list_candidates(
-        self, kind: str, entry: PatternEntry, token: IndexToken | None, bindings: Bindings
+        self, section: str, entry: PatternEntry, token: IndexToken | None, bindings: Bindings
     ) -> Sequence[str]:
         text = resolve_text(entry.key, bindings)
         if text is not None:
             return (text,)
-        if kind == "type":
-            return self.view.list_types()
-        return self.view.list_components() if token is None else self.view.find_having(token)
+        return self.view.list_elements(section) if token is None else self.view.find_having(token)
 
 
 def _list_pattern_tokens(pattern: Pattern, bindings: Bindings, depth: int) -> Iterator[IndexToken]:

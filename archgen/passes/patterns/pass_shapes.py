@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import Literal
 
+from archgen.diagnostics.diagnostic import Diagnostic
 from archgen.diagnostics.source_span import Span
 from archgen.frozen import NamedTuple
 from archgen.passes.patterns.expressions import Condition, Operand
@@ -12,6 +13,13 @@ from archgen.passes.patterns.pattern_shapes import Pattern
 
 WRONG_PASS = "wrong-pass"  # noqa: S105 - not a password
 """The rule of all that is wrong with a pass that is written as rules."""
+
+
+def diagnose_pass(message: str, span: Span, help_line: str | None = None) -> Diagnostic:
+    """Return the finding for what is wrong with a pass at a place."""
+    return Diagnostic(WRONG_PASS, message, span, help=help_line)
+
+
 EditKind = Literal["add", "set", "drop"]
 EDIT_KINDS: tuple[EditKind, ...] = ("drop", "set", "add")
 """What a rule does with what it found, in this order: what is dropped makes room."""

@@ -12,8 +12,8 @@ from archgen.frozen import dataclass
 from archgen.model.element_ids import is_id
 from archgen.passes.pass_running import PASSES
 from archgen.passes.pass_shape import STATES, Pass, PassWork
-from archgen.passes.patterns.pass_shapes import WRONG_PASS, PatternPass, RewriteRule
-from archgen.passes.patterns.rule_reading import RuleReader
+from archgen.passes.patterns.pass_shapes import WRONG_PASS, PatternPass, RewriteRule, diagnose_pass
+from archgen.passes.patterns.rule_reading import RuleReader, list_items
 from archgen.passes.patterns.rule_running import run_rules
 from archgen.project import LoadedProject
 from archgen.schema import validate_document
@@ -55,14 +55,14 @@ def read_pass(name: str, file: str, text: str, known_states: tuple[str, ...] = (
     """Read the text of a pass file. `known_states` are what it may say that it needs and leaves."""
     if len(text) > _MAX_TEXT:
         message = f"a pass file of {len(text):,} letters; at most {_MAX_TEXT:,} are read"
-        return ReadPass(name, file, text, None, (_diagnose_pass(message, Span.of_file(file), "write several passes"),))
+        return ReadPass(name, file, text, None, (diagnose_pass(message, Span.of_file(file), "write several passes"),))
     document, findings = parse_yaml(file, text)
     diagnostics = [Diagnostic(WRONG_PASS, f.message, f.span, labels=f.labels, help=f.help) for f in findings]
     if document is None or diagnostics:
         return ReadPass(name, file, text, None, tuple(diagnostics))
     if sum(1 for _ in list_spans(document.root)) > _MAX_VALUES:
         message = f"a pass file of more than {_MAX_VALUES:,} keys and values"
-        return ReadPass(name, file, text, None, (_diagnose_pass(message, Span.of_file(file), "write several passes"),))
+        return ReadPass(name, file, text, None, (diagnose_pass(message, Span.of_file(file), "write several passes"),))
     read = _PassFileReader(name, file, known_states).read(document.root)
     has_rules = isinstance(document.root.get("rules"), SequenceNode)
     return ReadPass(name, file, text, *read, has_rules=has_rules)
@@ -82,18 +82,18 @@ class _PassFileReader:
         found = self._rules.diagnostics
         texts = {key: self._read_text(root.get(key), key) for key in ("title", "description")}
         if not texts["title"] and "title" not in root.entries:
-            found.append(_diagnose_pass("a pass has a title", Span.of_file(self._file), "write `title: What it does.`"))
+            found.append(diagnose_pass("a pass has a title", Span.of_file(self._file), "write `title: What it does.`"))
         lists = {key: self._read_states(root.get(key)) for key in ("needs", "leaves", "ends")}
         rules_entry = root.entries.get("rules")
         rules: list[RewriteRule] = []
         if rules_entry is None or not isinstance(rules_entry.value, SequenceNode) or not rules_entry.value.items:
             place = rules_entry.key_span if rules_entry else Span.of_file(self._file)
             found.append(
-                _diagnose_pass("a pass has a list of rules", place, "write `rules:` and below it `- find: {...}`")
+                diagnose_pass("a pass has a list of rules", place, "write `rules:` and below it `- find: {...}`")
             )
         elif len(rules_entry.value.items) > MAX_RULES:
             message = f"{len(rules_entry.value.items):,} rules; a pass has at most {MAX_RULES}"
-            found.append(_diagnose_pass(message, rules_entry.key_span, "write several passes"))
+            found.append(diagnose_pass(message, rules_entry.key_span, "write several passes"))
         else:
             read_rules = [self._rules.read_rule(item) for item in rules_entry.value.items]
             rules = [rule for rule in read_rules if rule is not None]
@@ -105,14 +105,13 @@ class _PassFileReader:
         if node is None:
             return ""
         if not isinstance(node, ScalarNode) or node.value is None or not node.text.strip():
-            self._rules.diagnostics.append(_diagnose_pass(f"`{key}` is a text", node.span, None))
+            self._rules.diagnostics.append(diagnose_pass(f"`{key}` is a text", node.span, None))
             return ""
         return node.text
 
     def _read_states(self, node: YamlNode | None) -> tuple[str, ...]:
-        items = node.items if isinstance(node, SequenceNode) else [] if node is None else [node]
         words: list[str] = []
-        for item in items:
+        for item in list_items(node):
             word = item.text if isinstance(item, ScalarNode) else ""
             if word in self._states:
                 words.append(word)
@@ -121,7 +120,7 @@ class _PassFileReader:
                 did_you_mean(word, self._states) or f"there are {', '.join(f'`{each}`' for each in self._states)}"
             )
             self._rules.diagnostics.append(
-                _diagnose_pass(f"`{word}` is nothing that passes leave true", item.span, help_line)
+                diagnose_pass(f"`{word}` is nothing that passes leave true", item.span, help_line)
             )
         return tuple(words)
 
@@ -138,14 +137,14 @@ def list_project_passes(files: ProjectFiles, known_states: tuple[str, ...] = ())
     for file in _list_pass_files(files):
         name = file.removeprefix(f"{_PASS_FOLDER}/").rpartition(".")[0]
         if files.is_behind_link(file):
-            finding = _diagnose_pass(
+            finding = diagnose_pass(
                 "a pass is reached by a link; it stands in the project itself", Span.of_file(file), None
             )
             yield ReadPass(name, file, "", None, (finding,))
             continue
         file_text = read_text_file(files, file)
         if file_text.problem:
-            problem = _diagnose_pass(file_text.problem.message, file_text.problem.span, file_text.problem.help)
+            problem = diagnose_pass(file_text.problem.message, file_text.problem.span, file_text.problem.help)
             yield ReadPass(name, file, file_text.text, None, (problem,))
         else:
             yield read_pass(name, file, file_text.text, known_states)
@@ -160,10 +159,6 @@ def _list_pass_files(files: ProjectFiles) -> list[str]:
             )
         break
     return []
-
-
-def _diagnose_pass(message: str, span: Span, help_line: str | None) -> Diagnostic:
-    return Diagnostic(WRONG_PASS, message, span, help=help_line)
 
 
 SHIPPED_PREFIX = "rules."
@@ -208,11 +203,11 @@ def find_wrong_passes(files: ProjectFiles, sources: SourceTexts) -> Iterator[Dia
 def _judge_name(own: ReadPass) -> Iterator[Diagnostic]:
     if own.name in PASSES:
         message = f"there is a pass `{own.name}` already"
-        yield Diagnostic(WRONG_PASS, message, Span.of_file(own.file), help="give its file another name")
+        yield diagnose_pass(message, Span.of_file(own.file), "give its file another name")
     elif not is_id(own.name):
         message = f"`{own.name}` is no name for a pass"
         help_line = "small letters, digits and `_`, as in `tag_cameras.yaml`"
-        yield Diagnostic(WRONG_PASS, message, Span.of_file(own.file), help=help_line)
+        yield diagnose_pass(message, Span.of_file(own.file), help_line)
 
 
 def _make_pass(name: str, read: ReadPass, findings: tuple[Diagnostic, ...]) -> Pass:
@@ -224,7 +219,7 @@ def _make_pass(name: str, read: ReadPass, findings: tuple[Diagnostic, ...]) -> P
             return
         # A pass that is stopped makes nothing: what it wrote so far is taken back.
         kept_root, kept_provenance = copy_node(work.tree.root, work.tree.root.span), dict(work.tree.provenance)
-        problems = run_rules(pattern_pass, work.tree)
+        problems = run_rules(pattern_pass, work)
         if not problems and isinstance(kept_root, MappingNode):
             problems = tuple(check_result(pattern_pass, kept_root, work.tree.root))
         if problems and isinstance(kept_root, MappingNode):

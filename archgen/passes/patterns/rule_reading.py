@@ -8,13 +8,13 @@ from archgen.diagnostics.diagnostic import Diagnostic, Label
 from archgen.diagnostics.source_span import Span
 from archgen.diagnostics.suggestions import did_you_mean
 from archgen.passes.patterns.expressions import (
+    OPERANDS,
     ExpressionError,
-    Operand,
     list_operand_variables,
     parse_let_value,
     parse_where_condition,
 )
-from archgen.passes.patterns.matching import ViewPattern
+from archgen.passes.patterns.matching import COMPONENTS, SectionEntry, ViewPattern
 from archgen.passes.patterns.pass_shapes import (
     EDIT_KINDS,
     WRONG_PASS,
@@ -23,6 +23,7 @@ from archgen.passes.patterns.pass_shapes import (
     RewriteRule,
     RuleEdit,
     WrittenCondition,
+    diagnose_pass,
 )
 from archgen.passes.patterns.pattern_shapes import (
     Anything,
@@ -36,7 +37,7 @@ from archgen.passes.patterns.pattern_shapes import (
     list_variables,
     parse_text_pattern,
 )
-from archgen.passes.patterns.view_values import check_view_keys
+from archgen.passes.patterns.view_values import VIEW_KEYS, check_view_keys, list_crossed_words, name_element
 from archgen.syntax.yaml_tree import (
     MappingEntry,
     MappingNode,
@@ -57,21 +58,20 @@ def _check_rule(rule: RewriteRule) -> Iterator[Diagnostic]:
             _list_let_variables(let), bound, let.span, "`let` comes behind `find`, from the top down"
         )
         if let.name in bound:
-            yield _diagnose_rule(
+            yield diagnose_pass(
                 f"`${let.name}` is bound already: `let` gives it a second meaning", let.span, "choose another name"
             )
         bound[let.name] = None
     for written in rule.where:
-        names = _list_comparison_variables(written.comparison.left, written.comparison.right)
-        yield from _check_names(names, bound, written.span, "bind it in `find`")
+        yield from _check_names(_list_comparison_variables(written), bound, written.span, "bind it in `find`")
     for negative in rule.unless:
         inner = {**bound, **dict.fromkeys(_list_view_variables(negative.pattern))}
         for written in negative.where:
-            names = _list_comparison_variables(written.comparison.left, written.comparison.right)
+            names = _list_comparison_variables(written)
             yield from _check_names(names, inner, written.span, "bind it in `find`, or beside this `where`")
     hidden = {name for each in rule.unless for name in _list_view_variables(each.pattern)} - bound.keys()
     for edit in rule.edits:
-        for entry in (*edit.pattern.components, *edit.pattern.types):
+        for _, entry in edit.pattern.entries:
             yield from _check_edit(entry, bound, hidden)
     yield from _check_contradictions(rule)
 
@@ -79,11 +79,11 @@ def _check_rule(rule: RewriteRule) -> Iterator[Diagnostic]:
 def _check_edit(entry: PatternEntry, bound: Iterable[str], hidden: set[str]) -> Iterator[Diagnostic]:
     for part, span in _list_parts(entry):
         if _holds_anything(part):
-            yield _diagnose_rule("`$_` stands for anything, and cannot be written", span, "give it a name in `find`")
+            yield diagnose_pass("`$_` stands for anything, and cannot be written", span, "give it a name in `find`")
         for name in list_variables(part):
             if name in hidden:
                 message = f"`${name}` is bound in `unless` only: where the rule writes, there is none"
-                yield _diagnose_rule(message, span, "bind it in `find`")
+                yield diagnose_pass(message, span, "bind it in `find`")
             elif name not in bound:
                 yield _report_unbound(name, bound, span, "bind it in `find`, or with `let`")
 
@@ -113,18 +113,21 @@ def _holds_anything(part: Pattern) -> bool:
 def _check_names(names: Iterable[str], bound: Iterable[str], span: Span, help_line: str) -> Iterator[Diagnostic]:
     for name in dict.fromkeys(names):
         if name == "_":
-            yield _diagnose_rule("`$_` stands for anything, and has no value", span, "give it a name in `find`")
+            yield diagnose_pass("`$_` stands for anything, and has no value", span, "give it a name in `find`")
         elif name not in bound:
             yield _report_unbound(name, bound, span, help_line)
 
 
 def _check_kinds(find: ViewPattern) -> Iterator[Diagnostic]:
-    """Report a variable that is to be a component and a conceptual type at once."""
-    components = {e.key.name: e.span for e in find.components if isinstance(e.key, Variable)}
-    for entry in find.types:
-        if isinstance(entry.key, Variable) and entry.key.name in components:
-            label = Label(components[entry.key.name], "a component")
-            message = f"`${entry.key.name}` is a component and a conceptual type: nothing is both"
+    """Report a variable that is to be in two sections at once."""
+    first_places: dict[str, tuple[str, Span]] = {}
+    for section, entry in find.entries:
+        if not isinstance(entry.key, Variable):
+            continue
+        first, span = first_places.setdefault(entry.key.name, (section, entry.span))
+        if first != section:
+            label = Label(span, name_element(first))
+            message = f"`${entry.key.name}` is {name_element(first)} and {name_element(section)}: nothing is both"
             yield Diagnostic(WRONG_PASS, message, entry.span, labels=(label,), help="use two variables")
 
 
@@ -132,21 +135,14 @@ def _check_contradictions(rule: RewriteRule) -> Iterator[Diagnostic]:
     """Report what a rule writes in two ways at the same place."""
     seen: dict[tuple[object, ...], tuple[str, Pattern, Span]] = {}
     for edit in rule.edits:
-        for section, entries in (("components", edit.pattern.components), ("types", edit.pattern.types)):
-            for entry in entries:
-                for path, value, span in _list_leaves((section,), entry):
-                    first = seen.setdefault(path, (edit.kind, value, span))
-                    is_same_text = first[1] == value
-                    if (
-                        first[2] != span
-                        and {first[0], edit.kind} != {"drop", "add"}
-                        and not (is_same_text and first[0] == edit.kind)
-                    ):
-                        label = Label(first[2], f"`{first[0]}`")
-                        message = f"`{edit.kind}` contradicts `{first[0]}` at the same place"
-                        yield Diagnostic(
-                            WRONG_PASS, message, span, labels=(label,), help="`set` alone replaces a value"
-                        )
+        for section, entry in edit.pattern.entries:
+            for path, value, span in _list_leaves((section,), entry):
+                first = seen.setdefault(path, (edit.kind, value, span))
+                is_same_edit = first[1] == value and first[0] == edit.kind
+                if first[2] != span and {first[0], edit.kind} != {"drop", "add"} and not is_same_edit:
+                    label = Label(first[2], f"`{first[0]}`")
+                    message = f"`{edit.kind}` contradicts `{first[0]}` at the same place"
+                    yield Diagnostic(WRONG_PASS, message, span, labels=(label,), help="`set` alone replaces a value")
 
 
 def _list_leaves(path: tuple[object, ...], entry: PatternEntry) -> Iterator[tuple[tuple[object, ...], Pattern, Span]]:
@@ -159,33 +155,28 @@ def _list_leaves(path: tuple[object, ...], entry: PatternEntry) -> Iterator[tupl
 
 
 def _list_view_variables(pattern: ViewPattern) -> Iterator[str]:
-    for entry in (*pattern.components, *pattern.types):
+    for _, entry in pattern.entries:
         yield from list_variables(entry.key)
         yield from list_variables(entry.value)
 
 
 def _list_let_variables(let: LetBinding) -> Iterator[str]:
-    if isinstance(let.value, (Anything, Variable, Constant, TextPattern, ListPattern, MappingPattern)):
-        return list_variables(let.value)
-    return list_operand_variables(let.value)
+    if isinstance(let.value, OPERANDS):
+        return list_operand_variables(let.value)
+    return list_variables(let.value)
 
 
-def _list_comparison_variables(left: Operand, right: Operand | None) -> Iterator[str]:
-    yield from list_operand_variables(left)
-    yield from list_operand_variables(right)
+def _list_comparison_variables(written: WrittenCondition) -> Iterator[str]:
+    yield from list_operand_variables(written.comparison.left)
+    yield from list_operand_variables(written.comparison.right)
 
 
 def _report_unbound(name: str, bound: Iterable[str], span: Span, help_line: str) -> Diagnostic:
     guess = did_you_mean(f"${name}", [f"${each}" for each in bound])
-    return _diagnose_rule(f"nothing binds `${name}`", span, guess or help_line)
-
-
-def _diagnose_rule(message: str, span: Span, help_line: str | None = None) -> Diagnostic:
-    return Diagnostic(WRONG_PASS, message, span, help=help_line)
+    return diagnose_pass(f"nothing binds `${name}`", span, guess or help_line)
 
 
 RULE_KEYS = ("title", "find", "unless", "where", "let", "add", "set", "drop")
-VIEW_KEYS = ("components", "types")
 MAX_PATTERN_DEPTH = 30
 MAX_PATTERN_VALUES = 300
 """So many keys and values a pattern of `find` or `unless` may have: each is looked for inside of the one before it."""
@@ -195,7 +186,6 @@ class RuleReader:
     """Reads rules; what is wrong with them goes to `diagnostics`."""
 
     def __init__(self) -> None:
-        """Start with nothing wrong."""
         self.diagnostics: list[Diagnostic] = []
 
     def read_rule(self, node: YamlNode) -> RewriteRule | None:
@@ -238,7 +228,7 @@ class RuleReader:
 
     def _read_view(self, node: YamlNode, key: str) -> ViewPattern:
         if not isinstance(node, MappingNode) or not node.entries:
-            self._report(f"`{key}` is a mapping with `components` or `types`", node.span)
+            self._report(f"`{key}` is a mapping with `components`, `types`, `nodes`, ...", node.span)
             return ViewPattern()
         count = 0 if key in EDIT_KINDS else sum(1 for _ in list_spans(node))
         if count > MAX_PATTERN_VALUES:
@@ -247,7 +237,10 @@ class RuleReader:
             return ViewPattern()
         self.refuse_unknown_keys(node, (*VIEW_KEYS, "where") if key == "unless" else VIEW_KEYS, f"`{key}`")
         self.diagnostics += check_view_keys(node, is_edit=key in EDIT_KINDS)
-        return ViewPattern(*(tuple(self._read_elements(node.entries.get(section), key)) for section in VIEW_KEYS))
+        entries = (
+            (section, each) for section in VIEW_KEYS for each in self._read_elements(node.entries.get(section), key)
+        )
+        return ViewPattern(tuple(SectionEntry(section, each) for section, each in entries))
 
     def _read_elements(self, section: MappingEntry | None, key: str) -> Iterator[PatternEntry]:
         if section is None:
@@ -260,7 +253,9 @@ class RuleReader:
             pattern_key = parse_text_pattern(entry.key, entry.key, entry.key_span)
             if isinstance(pattern_key, Anything) and key in EDIT_KINDS:
                 self._report("`$_` stands for anything: nobody knows where to write", entry.key_span)
-            yield PatternEntry(pattern_key, self.read_pattern(entry.value), entry.key_span)
+            yield PatternEntry(
+                pattern_key, self.read_pattern(list_crossed_words(section.key, entry.value)), entry.key_span
+            )
 
     def read_pattern(self, node: YamlNode, depth: int = 0) -> Pattern:
         """Return the pattern that a tree is."""
@@ -285,15 +280,13 @@ class RuleReader:
         return parse_text_pattern(text, node.value, node.span)
 
     def _read_unless(self, node: YamlNode | None) -> Iterator[NegativePattern]:
-        items = node.items if isinstance(node, SequenceNode) else [] if node is None else [node]
-        for item in items:
+        for item in list_items(node):
             pattern = self._read_view(item, "unless")
             where = find_value(item, "where")
             yield NegativePattern(pattern, tuple(self._read_where(where)), _list_distinct(pattern))
 
     def _read_where(self, node: YamlNode | None) -> Iterator[WrittenCondition]:
-        items = node.items if isinstance(node, SequenceNode) else [] if node is None else [node]
-        for item in items:
+        for item in list_items(node):
             if not isinstance(item, ScalarNode) or item.value is None:
                 self._report("`where` is a comparison, or a list of them", item.span, "as in `where: $type != Pose`")
                 continue
@@ -322,11 +315,17 @@ class RuleReader:
                 self._report(str(error), entry.value.span, error.help_line)
 
     def _report(self, message: str, span: Span, help_line: str | None = None) -> None:
-        self.diagnostics.append(Diagnostic(WRONG_PASS, message, span, help=help_line))
+        self.diagnostics.append(diagnose_pass(message, span, help_line))
+
+
+def list_items(node: YamlNode | None) -> list[YamlNode]:
+    """Return the items of a list; what is no list is the only one, and nothing none."""
+    return node.items if isinstance(node, SequenceNode) else [] if node is None else [node]
 
 
 def _list_distinct(pattern: ViewPattern) -> frozenset[str]:
-    return frozenset(entry.key.name for entry in pattern.components if isinstance(entry.key, Variable))
+    keys = [entry.key for section, entry in pattern.entries if section == COMPONENTS]
+    return frozenset(key.name for key in keys if isinstance(key, Variable))
 
 
 def _first_place(node: MappingNode) -> Span:

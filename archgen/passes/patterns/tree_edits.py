@@ -9,6 +9,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 
 from archgen.diagnostics.element_origins import TreePath
+from archgen.language.language_tables import SECTION_KINDS
 from archgen.model.element_ids import is_id
 from archgen.passes.patterns.architecture_view import ArchitectureView, find_instance
 from archgen.passes.patterns.edit_values import (
@@ -22,6 +23,8 @@ from archgen.passes.patterns.edit_values import (
     merge_data,
 )
 from archgen.passes.patterns.layer_choice import TYPE_NAME_KEYS, DataPath, WrittenPlace, choose_layer, find_source
+from archgen.passes.patterns.matching import COMPONENTS
+from archgen.passes.patterns.model_facts import ModelFacts
 from archgen.passes.patterns.pass_shapes import EditKind, RuleEdit
 from archgen.passes.patterns.pattern_shapes import (
     INNER_KEY,
@@ -133,11 +136,22 @@ class TreeEditor:
     """Applies edits of rules to the tree of a view, and tells the view."""
 
     def __init__(self, view: ArchitectureView) -> None:
-        """Take the view of the tree."""
         self._view = view
         self._tree = view.tree
         self.has_new_names = False
         """Whether components or outputs came or went: references may be taken for others."""
+        self.facts: ModelFacts | None = None
+        """What is known of the linked project, where rules ask for it."""
+
+    def find_path(self, section: str, name: str) -> TreePath | None:
+        """Return where something that there is is written, None where nobody wrote it."""
+        if section == COMPONENTS:
+            return self._view.elements[name].path if name in self._view.elements else None
+        if self._view.get_element(section, name) is None:
+            return None
+        if section == "types":
+            return self._view.types.find_path(name)
+        return self.facts.find_path(section, name) if self.facts and section in SECTION_KINDS else None
 
     def apply(self, edits: Sequence[RuleEdit], bindings: Bindings, origin: TreePath) -> bool:
         """Write what a rule writes under some bindings; say whether that changed anything. Raise EditError.
@@ -146,10 +160,13 @@ class TreeEditor:
         """
         count = self._tree.edit_count
         for edit in edits:
-            for entry in edit.pattern.components:
-                self._edit_component(edit.kind, entry, bindings, origin)
-            for entry in edit.pattern.types:
-                self._edit_type(edit.kind, entry, bindings, origin)
+            for section, entry in edit.pattern.entries:
+                if section == COMPONENTS:
+                    self._edit_component(edit.kind, entry, bindings, origin)
+                elif section == "types":
+                    self._edit_type(edit.kind, entry, bindings, origin)
+                elif self.facts is not None:
+                    self._edit_element(self.facts, edit.kind, section, entry, bindings, origin)
         return self._tree.edit_count != count
 
     def _edit_component(self, kind: EditKind, entry: PatternEntry, bindings: Bindings, origin: TreePath) -> None:
@@ -162,8 +179,12 @@ class TreeEditor:
         if value is not None and not isinstance(value, dict):
             message = f"`{key}` is to be a component, and what is written of it is no mapping"
             raise EditError(message)
+        host = None if isinstance(value, ComponentBody) else (value or {}).get("host")
         if not is_known:
             self._add_component(key, value or {}, origin)
+        if host is not None:
+            self._write_host(key, host)
+        if not is_known:
             return
         element = self._view.elements[key]
         form = find_form({"type": "component_type", "group": "group"}.get(element.kind, "component"))
@@ -206,6 +227,50 @@ class TreeEditor:
             expanded = expand_value(value, find_form("type"))
             merge_data(self._view, kind, path, expanded, path if is_known else origin)
         self._view.note_type_edit()
+
+    def _edit_element(  # noqa: PLR0913, PLR0917 - what an edit is
+        self,
+        facts: ModelFacts,
+        kind: EditKind,
+        section: str,
+        entry: PatternEntry,
+        bindings: Bindings,
+        origin: TreePath,
+    ) -> None:
+        """Write a node, host, container or link where it is written, or make a new one."""
+        name, value = fill_key(entry.key, bindings), fill_pattern(entry.value, bindings)
+        is_known = self._view.get_element(section, name) is not None
+        if not is_known and not is_id(name):
+            message = f"`{name}` is no id, so nothing can be called so"
+            raise EditError(message, "`snake(...)` in `let` makes one of any text")
+        path = facts.find_path(section, name)
+        if path is None:
+            message = f"the container `{name}` is brought along by a component, and is not written in `containers`"
+            raise EditError(message, "declare it in `containers`")
+        if kind == "drop":
+            drop_data(self._view, path, value) if is_known else None
+        else:
+            expanded = expand_value(value, find_form(SECTION_KINDS[section]))
+            if path[0] == "groups" and isinstance(expanded, dict) and "implements" in expanded:
+                message = (
+                    f"the node `{name}` is that of `{facts.elements[section][name]['implements']}`, and of nothing else"
+                )
+                raise EditError(message, "leave `implements` out, or make a node of another name")
+            merge_data(self._view, kind, path, expanded, path if is_known else origin)
+        self._note_place(path)
+        facts.note_edit(section, name, path)
+
+    def _write_host(self, key: str, value: ViewValue) -> None:
+        """Write on which host a component runs where that is written: at its nodes, or their containers."""
+        for path in self.facts.list_host_paths(key) if self.facts is not None else ():
+            self._tree.set(path, make_data_node(value, self._tree.find_place(path)), path)
+            self._note_place(path)
+
+    def _note_place(self, path: TreePath) -> None:
+        """Tell the view of the components that a path in the tree leads through."""
+        for key, element in self._view.elements.items():
+            if path[: len(element.path)] == element.path:
+                self._view.note_edit(key, self._view.list_layers(key)[0])
 
     def _drop(self, key: str, path: DataPath, value: ViewValue) -> None:
         """Take something out of all places that a component has it from."""

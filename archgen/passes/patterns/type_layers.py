@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from archgen.compose.instance_overlay import InstanceOverlay
-from archgen.compose.library_types import library_of_type, list_libraries, list_type_entries
+from archgen.compose.library_types import library_of_type, list_type_entries
 from archgen.compose.type_expressions import TypeExpression, parse_type_expression
 from archgen.compose.type_table import TypeTable, list_generic_names
 from archgen.diagnostics.diagnostic import Diagnostic
@@ -28,7 +28,6 @@ class TypeLayers:
     """The component types of a tree; say with `renew_type` which of them was edited."""
 
     def __init__(self, root: MappingNode) -> None:
-        """Take the root of a merged project."""
         self._diagnostics: list[Diagnostic] = []
         self.entries = list_type_entries(root)
         self._table = TypeTable(self.entries, self._diagnostics)
@@ -118,7 +117,7 @@ def _get_type_reference(node: MappingNode) -> ScalarNode | None:
 
 def _read_library_type(root: MappingNode, library: str, name: str) -> MappingEntry | None:
     """Return one component type of a library, as the project knows it."""
-    for entry in list_libraries(root):
+    for entry in list_entries(root, "libraries"):
         types = find_value(entry.value, "component_types")
         own_name = name.removeprefix(f"{library}.")
         if entry.key == library and isinstance(types, MappingNode) and own_name in types.entries:

@@ -31,7 +31,6 @@ class MatchBudget:
     """Counts the steps of matching down."""
 
     def __init__(self, steps: int) -> None:
-        """Take how many steps there are."""
         self.steps = steps
         self.remaining = steps
 

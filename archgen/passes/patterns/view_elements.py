@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
 from typing import Literal
 
-from archgen.compose.library_types import library_of_type, list_libraries
+from archgen.compose.library_types import library_of_type
 from archgen.diagnostics.element_origins import TreePath
 from archgen.frozen import NamedTuple
 from archgen.model.path_resolver import PathResolver
@@ -13,8 +13,9 @@ from archgen.passes.patterns.matching import IndexToken, list_tokens
 from archgen.passes.patterns.pattern_shapes import PortReference, ViewValue
 from archgen.passes.patterns.view_values import read_view_value
 from archgen.passes.project_tree import ProjectTree
+from archgen.passes.written_places import list_type_sections
 from archgen.schema import fold_type_name
-from archgen.syntax.yaml_tree import MappingEntry, MappingNode, ScalarNode, YamlNode, find_value, list_entries
+from archgen.syntax.yaml_tree import MappingEntry, MappingNode, ScalarNode, YamlNode, list_entries
 
 _KINDS = ("group", "component", "output")
 _SELF = "self."
@@ -176,7 +177,6 @@ class ConceptualTypes:
     """The conceptual types of a tree that is edited, read when they are asked for."""
 
     def __init__(self, tree: ProjectTree) -> None:
-        """Take the tree of a merged project."""
         self._tree = tree
         self._bodies: dict[str, dict[str, ViewValue]] | None = None
         self._paths: dict[str, TreePath] = {}
@@ -212,14 +212,8 @@ class ConceptualTypes:
 
     def _list_entries(self) -> Iterator[tuple[TreePath, MappingEntry]]:
         """Yield each type that is written, with the path of the section that it stands in."""
-        sections: list[tuple[TreePath, YamlNode | None]] = [(("types",), self._tree.root.get("types"))]
-        for library in list_libraries(self._tree.root):
-            body = library.value
-            types = find_value(body, "types")
-            sections.append((("libraries", library.key, "types"), types))
-        for path, section in sections:
-            for entry in list_entries(section):
-                yield path, entry
+        for path in list_type_sections(self._tree, "types"):
+            yield from ((path, entry) for entry in list_entries(self._tree.get(path)))
 
 
 ElementKind = Literal["group", "type", "component"]

@@ -6,9 +6,10 @@ import functools
 from collections.abc import Callable, Iterator, Mapping
 
 from archgen.diagnostics.diagnostic import Diagnostic
-from archgen.diagnostics.source_span import Span
 from archgen.diagnostics.suggestions import did_you_mean
-from archgen.passes.patterns.pass_shapes import WRONG_PASS
+from archgen.language.language_tables import SECTION_KINDS
+from archgen.link.mapping_values import list_scalars
+from archgen.passes.patterns.pass_shapes import diagnose_pass
 from archgen.passes.patterns.pattern_shapes import PortReference, ScalarText, ViewValue
 from archgen.schema.language_schema import load_schema
 from archgen.syntax.yaml_tree import MappingEntry, MappingNode, ScalarNode, SequenceNode, YamlNode, list_entries
@@ -50,8 +51,21 @@ def _move_reference(reference: PortReference, moves: Mapping[str, str], node: Ya
     return reference
 
 
-VIRTUAL_KEYS = ("in", "id", "kind")
-"""What a view says of a component beside the language's own keys: where it stands, its id alone, and what it is."""
+VIRTUAL_KEYS = ("in", "id", "kind", "host")
+"""What a view says of a component beside the language's own keys: where it stands, its id alone, what it is, where it runs."""
+FACT_KEYS = ("nodes", "hosts", "containers", "links", "topics", "connections")
+"""Sections that are known once a project is linked."""
+VIEW_KEYS = ("components", "types", *FACT_KEYS)
+"""The sections that rules see."""
+_DERIVED_KEYS = {
+    "topics": ("flow", "messages", "types", "publishers", "subscribers", "servers", "clients"),
+    "connections": ("from", "to", "type", "crosses"),
+}
+_CROSSED = ("host", "partner", "process")
+_DERIVED_HELP = {
+    "topics": "a topic is named at a node: `publishes: {$port: {topic: ...}}`",
+    "connections": "a connection is written at its reader: `inputs: {$input: {from: [$source.$port]}}`",
+}
 _PORT_KINDS = {"inputs": ("input", "type_input"), "outputs": ("output",)}
 
 
@@ -60,22 +74,53 @@ def check_view_keys(view: MappingNode, *, is_edit: bool) -> Iterator[Diagnostic]
     for component in list_entries(view, "components"):
         for entry in list_entries(component.value):
             yield from _check_component_key(entry, is_edit=is_edit)
-    for named_type in list_entries(view, "types"):
-        for entry in list_entries(named_type.value):
-            yield from _check_key(entry, _list_keys("type"), "a type")
+    for section in VIEW_KEYS[1:]:
+        keys = _DERIVED_KEYS.get(section) or _list_keys(SECTION_KINDS[section])
+        for element in list_entries(view, section):
+            if is_edit and section in _DERIVED_KEYS:
+                message = f"{name_element(section)} follows from what is connected, and is not written"
+                yield diagnose_pass(message, element.key_span, _DERIVED_HELP[section])
+            for entry in list_entries(element.value):
+                yield from _check_key(entry, keys, name_element(section))
+                yield from _check_crossed(entry)
+
+
+def name_element(section: str) -> str:
+    """Return what one of those that stand in a section is called: `a node`."""
+    return f"a {section.removesuffix('s')}"
+
+
+def _check_crossed(entry: MappingEntry) -> Iterator[Diagnostic]:
+    for word in list_scalars(entry.value) if entry.key == "crosses" else ():
+        if "$" not in word.text and word.text not in _CROSSED:
+            help_line = did_you_mean(word.text, _CROSSED) or "a connection crosses `host`, `partner` or `process`"
+            yield diagnose_pass(f"`{word.text}` is nothing that a connection crosses", word.span, help_line)
+
+
+def list_crossed_words(section: str, element: YamlNode) -> YamlNode:
+    """Return an element of a section as it is looked for: `crosses: host` of a connection is one item of a list."""
+    crossed = element.entries.get("crosses") if section == "connections" and isinstance(element, MappingNode) else None
+    if crossed is None or not isinstance(crossed.value, ScalarNode) or not isinstance(element, MappingNode):
+        return element
+    listed = crossed.with_value(SequenceNode([crossed.value], crossed.value.span))
+    return MappingNode({**element.entries, "crosses": listed}, element.span)
 
 
 def _check_component_key(entry: MappingEntry, *, is_edit: bool) -> Iterator[Diagnostic]:
     if entry.key == "components":
         help_line = "what stands inside has a path of its own: `$inner: {in: $outer}`"
-        yield _diagnose_word("components do not stand inside of one another here", entry.key_span, help_line)
+        yield diagnose_pass("components do not stand inside of one another here", entry.key_span, help_line)
     elif is_edit and entry.key in {"in", "id"}:
         help_line = "a new component stands where its path says: `$outer.name`"
-        yield _diagnose_word(f"`{entry.key}` follows from the path, and is not written", entry.key_span, help_line)
+        yield diagnose_pass(f"`{entry.key}` follows from the path, and is not written", entry.key_span, help_line)
     else:
         yield from _check_key(
             entry, _list_keys("component", "component_type", "group", extra=VIRTUAL_KEYS), "a component"
         )
+    for host in (each for each in list_entries(entry.value) if entry.key == "node" and each.key == "host"):
+        if not is_edit:
+            message = "`host` below `node` is only what stands at the component itself, and not where it runs"
+            yield diagnose_pass(message, host.key_span, "`host` of the component holds wherever it is written")
     kinds = _PORT_KINDS.get(entry.key)
     for port in list_entries(entry.value) if kinds else ():
         for inner in list_entries(port.value):
@@ -85,7 +130,7 @@ def _check_component_key(entry: MappingEntry, *, is_edit: bool) -> Iterator[Diag
 def _check_key(entry: MappingEntry, known_keys: tuple[str, ...], subject: str) -> Iterator[Diagnostic]:
     if "$" not in entry.key and entry.key not in known_keys:
         help_line = did_you_mean(entry.key, known_keys)
-        yield _diagnose_word(f"`{entry.key}` is no key of {subject}", entry.key_span, help_line)
+        yield diagnose_pass(f"`{entry.key}` is no key of {subject}", entry.key_span, help_line)
 
 
 @functools.cache
@@ -93,7 +138,3 @@ def _list_keys(*kinds: str, extra: tuple[str, ...] = ()) -> tuple[str, ...]:
     definitions = load_schema()["$defs"]
     keys = {key: None for kind in kinds for key in definitions[kind]["properties"] if key != "components"}
     return (*keys, *extra)
-
-
-def _diagnose_word(message: str, span: Span, help_line: str | None) -> Diagnostic:
-    return Diagnostic(WRONG_PASS, message, span, help=help_line)

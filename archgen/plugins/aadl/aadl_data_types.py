@@ -6,10 +6,9 @@ import re
 from typing import Any
 
 from archgen.plugins.aadl.aadl_tree import AadlLink, AadlList, AadlName
-from archgen.plugins.aadl.archgen_words import find_own_text
+from archgen.plugins.aadl.archgen_words import find_own_text, read_own_words
 from archgen.plugins.aadl.classifier_names import KnownClassifier, find_only_implementations
-from archgen.plugins.aadl.import_notes import NoteList
-from archgen.plugins.aadl.property_values import PropertyScope, UsedProperties, read_first_text, read_size, read_texts
+from archgen.plugins.aadl.property_values import PropertyScope, read_first_text, read_size, read_texts
 from archgen.plugins.aadl.resolved_classifiers import UNBOUND, ClassifierResolver, ClassifierUse, ResolvedClassifier
 
 _ROS_PACKAGE = re.compile(r"[a-z][a-z0-9_]*_(?:msgs|srvs|interfaces|actions)\Z")
@@ -35,16 +34,17 @@ _CALL_PARTS = {
 _MAX_ARRAY = 1_000_000
 _BASE_PACKAGES = frozenset({"base_types", "data_model"})
 _KEEPING_CLASSIFIERS = frozenset({"internal_state", "tf"})
+_TYPE_KEYS = {"comment": "description", "status": "status", "version": "version"}
+_FIELD_KEYS = {"default": "default_value", "unit": "unit_name", "comment": "description"}
 """Data of the library of components: they are hints of who has them, and no types."""
 
 
 class AadlDataTypes:
     """The types of a model; each gets its name when it is first asked for."""
 
-    def __init__(self, resolver: ClassifierResolver, notes: NoteList, used: UsedProperties) -> None:
-        """Make types of what `resolver` knows."""
+    def __init__(self, resolver: ClassifierResolver) -> None:
         self.types: dict[str, dict[str, Any]] = {}
-        self._resolver, self._notes, self._used = resolver, notes, used
+        self._resolver = resolver
         self._names: dict[str, str] = {}
         self._taken_names: set[str] = set()
         self._only_implementations = find_only_implementations(resolver.names)
@@ -85,16 +85,10 @@ class AadlDataTypes:
                 self._name_known(known, "msg")
         return count
 
-    def _is_part(self, known_classifier: KnownClassifier | None) -> bool:
+    def _is_part(self, known_classifier: KnownClassifier) -> bool:
         """Whether an export of archgen's wrote data as the request or the answer of a call: the message says it."""
-        resolved = (
-            self._resolver.resolve(ClassifierUse(known_classifier.full_name, known_classifier))
-            if known_classifier
-            else None
-        )
-        return resolved is not None and bool(
-            find_own_text(PropertyScope(self._resolver, self._used, resolved), (), "part_of")
-        )
+        scope = PropertyScope(self._resolver, self._resolver.resolve_known(known_classifier))
+        return bool(find_own_text(scope, (), "part_of"))
 
     def _is_shadowed(self, known_classifier: KnownClassifier) -> bool:
         """Whether a type is told by its only implementation."""
@@ -108,10 +102,8 @@ class AadlDataTypes:
         is_only = self._only_implementations.get(type_key) is known_classifier
         if key in self._names:
             return self._names[key]
-        resolved = self._resolver.resolve(
-            ClassifierUse(known_classifier.full_name, known_classifier)
-        ) or ResolvedClassifier(known_classifier)
-        scope = PropertyScope(self._resolver, self._used, resolved)
+        resolved = self._resolver.resolve_known(known_classifier)
+        scope = PropertyScope(self._resolver, resolved)
         own_kind = find_own_text(scope, (), "flow_kind") or kind
         own_message = find_own_text(scope, (), "message_name") or _make_message(known_classifier.full_name, own_kind)
         name = find_own_text(scope, (), "id") or known_classifier.classifier.name.partition(".")[0]
@@ -139,10 +131,7 @@ class AadlDataTypes:
         self.types[name] = body
 
     def _describe(self, resolved: ResolvedClassifier, scope: PropertyScope, kind: str) -> dict[str, Any]:
-        body: dict[str, Any] = {}
-        for key, word in (("comment", "description"), ("status", "status"), ("version", "version")):
-            if text := find_own_text(scope, (), word):
-                body[key] = text
+        body = read_own_words(scope, (), _TYPE_KEYS)
         if size := read_size(scope.value((), "data_size", "source_data_size")):
             body["size"] = size
         if prototypes := [use.name for use in resolved.prototypes.values() if use.category == UNBOUND]:
@@ -182,8 +171,8 @@ class AadlDataTypes:
             content = self._only_implementations.get(known.key)
             if not self._is_part(known):
                 parts[_CALL_PARTS[name]] = self.name_use(port.use)
-            elif content and (data := self._resolver.resolve(ClassifierUse(content.full_name, content))):
-                parts[_CALL_PARTS[name]] = self._read_fields(data, PropertyScope(self._resolver, self._used, data))
+            elif content and (data := self._resolver.resolve_known(content)):
+                parts[_CALL_PARTS[name]] = self._read_fields(data, PropertyScope(self._resolver, data))
         return parts
 
     def _read_enumerators(self, scope: PropertyScope) -> list[str]:
@@ -199,11 +188,7 @@ class AadlDataTypes:
             if part.category != "data":
                 continue
             type_name = self._name_field(part.use) + _write_dimensions(part.written.dimensions)
-            own_words = {
-                key: text
-                for key, word in (("default", "default_value"), ("unit", "unit_name"), ("comment", "description"))
-                if (text := find_own_text(scope, (name,), word))
-            }
+            own_words = read_own_words(scope, (name,), _FIELD_KEYS)
             type_name = find_own_text(scope, (name,), "field_type") or type_name
             field_name = find_own_text(scope, (name,), "id") or _fold_field_name(part.written.name)
             if type_name:
@@ -228,7 +213,7 @@ class AadlDataTypes:
                 return _BASE_TYPES[name]
             if name in _SIZELESS_TYPES and use.known is not None:
                 words = f"it has no size in AADL; fields have `{_SIZELESS_TYPES[name]}`"
-                self._notes.add_counted(f"Base_Types::{name}", words, use.known.classifier.span, fate="noted")
+                self._resolver.notes.add_counted(f"Base_Types::{name}", words, use.known.classifier.span, fate="noted")
             if name in _SIZELESS_TYPES:
                 return _SIZELESS_TYPES[name]
         type_name = self.name_use(use)

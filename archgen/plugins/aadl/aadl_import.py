@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
@@ -18,7 +19,7 @@ from archgen.plugins.aadl.import_notes import NoteList
 from archgen.plugins.aadl.model_roots import ModelRoots
 from archgen.plugins.aadl.package_parsing import ParsedText, parse_text
 from archgen.plugins.aadl.port_mapping import PortMapper
-from archgen.plugins.aadl.property_values import PropertyScope, UsedProperties
+from archgen.plugins.aadl.property_values import PropertyScope
 from archgen.plugins.aadl.resolved_classifiers import ClassifierResolver
 from archgen.plugins.aadl.robot_groups import GroupBuilder
 from archgen.plugins.aadl.structures import ClassifierStructure, StructureFinder
@@ -32,8 +33,9 @@ def read_aadl(files: Sequence[Path]) -> ForeignImport:
     notes = NoteList()
     names = ClassifierNames()
     tokens_left = MAX_TOKENS
-    for file in files:
-        parsed = _read_file(file, notes, tokens_left)
+    texts = [each for file in files for each in _list_texts(file)]
+    for file in texts:
+        parsed = _read_file(file, notes, tokens_left, is_alone=len(texts) == 1)
         tokens_left -= parsed.token_count
         names.add_packages(parsed.packages)
         names.add_property_sets(parsed.property_sets)
@@ -44,7 +46,28 @@ def read_aadl(files: Sequence[Path]) -> ForeignImport:
     return _ModelImport(names, notes).make_import()
 
 
-def _read_file(file: Path, notes: NoteList, max_tokens: int) -> ParsedText:
+_MAX_FILES = 5_000
+
+
+def _list_texts(path: Path) -> list[Path]:
+    """Return the files in AADL that a folder holds, links left out; a file is itself. Raise ForeignFileError."""
+    if not path.is_dir():
+        return [path]
+    found: list[Path] = []
+    for folder, folders, names in os.walk(path):
+        folders[:] = sorted(name for name in folders if not name.startswith("."))
+        files = (Path(folder, name) for name in sorted(names) if name.endswith(".aadl"))
+        found += [each for each in files if each.is_file() and not each.is_symlink()]
+        if len(found) > _MAX_FILES:
+            words = f"it holds more than {_MAX_FILES:,} files in AADL"
+            raise ForeignFileError(words, Span.of_file(str(path)), "give the folders of the packages that you need")
+    if not found:
+        words = "no file in it is called `.aadl`"
+        raise ForeignFileError(words, Span.of_file(str(path)), "give the folder of the model, or its files")
+    return found
+
+
+def _read_file(file: Path, notes: NoteList, max_tokens: int, *, is_alone: bool) -> ParsedText:
     text = _decode_text(str(file), read_bounded(file), notes)
     try:
         parsed = parse_text(str(file), text, max_tokens)
@@ -55,11 +78,12 @@ def _read_file(file: Path, notes: NoteList, max_tokens: int) -> ParsedText:
     if not parsed.packages and not parsed.property_sets:
         fault = parsed.faults[0] if parsed.faults else None
         words = "there is no AADL in it: neither a package nor a property set"
-        raise ForeignFileError(
-            words,
-            fault.span if fault else Span.of_file(str(file)),
-            "an AADL file begins with `package NAME public`",
-        )
+        place = fault.span if fault else Span.of_file(str(file))
+        help_line = "an AADL file begins with `package NAME public`"
+        if is_alone:
+            raise ForeignFileError(words, place, help_line)
+        notes.add("file", words, place, help_line)
+        return parsed
     for fault in parsed.faults:
         notes.add("syntax", fault.message, fault.span, fault.help_line or "mend it, or leave it out")
     if parsed.unpackaged is not None:
@@ -95,20 +119,19 @@ class _ModelImport:
     """The mapping of a model, step by step."""
 
     def __init__(self, names: ClassifierNames, notes: NoteList) -> None:
-        self._names, self._notes, self._used = names, notes, UsedProperties()
+        self._names, self._notes = names, notes
         self._resolver = ClassifierResolver(names, notes)
-        self._types = AadlDataTypes(self._resolver, notes, self._used)
-        mapper = PortMapper(self._resolver, self._types, self._used, notes)
-        self._finder = StructureFinder(self._resolver, mapper, self._used, notes)
+        self._types = AadlDataTypes(self._resolver)
+        self._finder = StructureFinder(self._resolver, PortMapper(self._resolver, self._types))
 
     def make_import(self) -> ForeignImport:
         """Return the slices, what was taken, and the notes."""
         data_count = self._types.add_all()
-        roots = ModelRoots(self._resolver, self._finder, self._notes)
-        builder = ComponentBuilder(self._resolver, self._notes, roots.find_type_id)
-        groups = GroupBuilder(self._resolver, roots, builder, self._used, self._notes)
+        roots = ModelRoots(self._resolver, self._finder)
+        builder = ComponentBuilder(self._resolver, roots.find_type_id)
+        groups = GroupBuilder(self._resolver, roots, builder)
         nodes = NodeWriter()
-        hardware = HardwareMapper(self._resolver, self._notes)
+        hardware = HardwareMapper(self._resolver)
         chains = ChainMapper(self._notes)
         component_types: dict[str, Body] = {}
         try:
@@ -143,7 +166,7 @@ class _ModelImport:
         }
         taken = self._count_taken(roots, data_count)
         taken |= {"processor": len(hardware.hosts), "bus": len(hardware.links), "end to end flow": len(chains.chains)}
-        tell_untaken(self._resolver, self._used, self._notes)
+        tell_untaken(self._resolver)
         title = next((find_own_text(system.scope, (), "title") for system in groups.systems), "")
         if not title and len(self._names.packages) == 1:
             title = next(iter(self._names.packages.values())).name
@@ -157,7 +180,7 @@ class _ModelImport:
         )
 
     def _build_type(self, structure: ClassifierStructure, builder: ComponentBuilder) -> Body:
-        scope = PropertyScope(self._resolver, self._used, structure.resolved)
+        scope = PropertyScope(self._resolver, structure.resolved)
         body = builder.build_body(structure, scope)
         if structure.is_node:
             node = map_node_ports(structure, scope, is_type=True)

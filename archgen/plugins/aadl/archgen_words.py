@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from typing import Any
 from urllib.parse import unquote
 
@@ -10,11 +11,17 @@ from archgen.plugins.aadl.property_values import PropertyScope, read_count, read
 
 _COMPONENT_KEYS = ("title", "description", "functionality", "owner", "role")
 _NODE_KEYS = {"package": "package_name", "executable": "executable_name"}
+_PORT_KEYS = {"medium": "medium", "external": "external_end", "description": "description", "frame": "frame"}
 
 
 def find_own_text(scope: PropertyScope, path: Path, key: str) -> str:
     """Return the text of a property of archgen's, or nothing."""
     return unquote(read_first_text(scope.value(path, f"archgen::{key}")))
+
+
+def read_own_words(scope: PropertyScope, path: Path, words: Mapping[str, str]) -> dict[str, Any]:
+    """Return the texts that are there, by the keys of these properties in the language."""
+    return {key: text for key, word in words.items() if (text := find_own_text(scope, path, word))}
 
 
 def find_own_texts(scope: PropertyScope, path: Path, key: str) -> dict[str, str]:
@@ -36,23 +43,20 @@ def is_marked(scope: PropertyScope, path: Path, key: str) -> bool:
 
 def read_component_words(scope: PropertyScope) -> dict[str, Any]:
     """Return what archgen says of a component or group."""
-    words: dict[str, Any] = {key: text for key in _COMPONENT_KEYS if (text := find_own_text(scope, (), key))}
+    words = read_own_words(scope, (), {key: key for key in _COMPONENT_KEYS})
     tags = [unquote(text) for text in read_texts(scope.value((), "archgen::tags"))]
     return {**words, "tags": tags} if tags else words
 
 
 def read_node_words(scope: PropertyScope) -> dict[str, Any]:
     """Return what archgen says of a node."""
-    words: dict[str, Any] = {}
-    if title := find_own_text(scope, (), "node_title"):
-        words["title"] = title
+    words = read_own_words(scope, (), {"title": "node_title"})
     kinds = [word for word in find_own_text(scope, (), "node_kind").split(", ") if word]
     if kinds:
         words["kind"] = kinds[0] if len(kinds) == 1 else kinds
-    return words | {key: text for key, word in _NODE_KEYS.items() if (text := find_own_text(scope, (), word))}
+    return words | read_own_words(scope, (), _NODE_KEYS)
 
 
 def read_port_words(scope: PropertyScope, path: Path) -> dict[str, Any]:
     """Return what archgen says of a port."""
-    words = {"medium": "medium", "external": "external_end", "description": "description", "frame": "frame"}
-    return {key: text for key, word in words.items() if (text := find_own_text(scope, path, word))}
+    return read_own_words(scope, path, _PORT_KEYS)

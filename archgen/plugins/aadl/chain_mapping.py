@@ -29,7 +29,6 @@ class ChainMapper:
     """Makes the chains of all roots."""
 
     def __init__(self, notes: NoteList) -> None:
-        """Start without any chain."""
         self.chains: dict[str, Body] = {}
         self._notes = notes
 

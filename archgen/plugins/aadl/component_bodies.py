@@ -9,7 +9,6 @@ from archgen.plugins.aadl.aadl_tree import Path
 from archgen.plugins.aadl.archgen_words import find_own_text, read_component_words, read_port_words
 from archgen.plugins.aadl.bus_names import name_bus_medium, read_bound_path
 from archgen.plugins.aadl.element_hints import keep_sources, keep_structure, keep_thread
-from archgen.plugins.aadl.import_notes import NoteList
 from archgen.plugins.aadl.port_mapping import MappedPort
 from archgen.plugins.aadl.property_values import PropertyScope, read_count, read_first_text
 from archgen.plugins.aadl.resolved_classifiers import ClassifierResolver, ResolvedClassifier
@@ -18,6 +17,8 @@ from archgen.plugins.aadl.thread_timing import add_port_hints, add_trigger, find
 
 Body = dict[str, Any]
 MAX_COMPONENTS = 50_000
+_TELLING_PROPERTIES = ("topic_properties::name", "actual_connection_binding")
+"""What is said of a connection by its name."""
 _USES = {(True, False): "subscribes", (False, False): "publishes", (True, True): "calls", (False, True): "serves"}
 
 
@@ -28,11 +29,9 @@ class TooManyPartsError(Exception):
 class ComponentBuilder:
     """Makes the bodies of components; what stands in several places is an instance of a component type."""
 
-    def __init__(
-        self, resolver: ClassifierResolver, notes: NoteList, find_type: Callable[[ClassifierStructure], str]
-    ) -> None:
+    def __init__(self, resolver: ClassifierResolver, find_type: Callable[[ClassifierStructure], str]) -> None:
         """Ask `find_type` for the component type that a structure is; it answers nothing for what is written in place."""
-        self._resolver, self._notes, self._find_type = resolver, notes, find_type
+        self._resolver, self._find_type = resolver, find_type
         self._count = 0
 
     def build_body(self, structure: ClassifierStructure, scope: PropertyScope) -> Body:
@@ -60,8 +59,8 @@ class ComponentBuilder:
             body["tags"] = ["device"]
             for port_body in outputs.values():
                 port_body.setdefault("medium", "physical")
-        own_scope = PropertyScope(self._resolver, scope.used, resolved)
-        hints |= keep_sources(own_scope, ()) | keep_structure(structure, scope, self._notes)
+        own_scope = PropertyScope(self._resolver, resolved)
+        hints |= keep_sources(own_scope, ()) | keep_structure(structure, scope)
         body |= {"hints": {"aadl": hints}} if hints else {}
         self._wire_inside(structure, body, scope)
         return body | read_component_words(scope)
@@ -101,7 +100,7 @@ class ComponentBuilder:
         for port in structure.ports.ports:
             if words := read_port_words(scope, port.path):
                 reach_port(body, "inputs" if port.is_input else "outputs", port.id).update(words)
-        if not structure.parts and (timing := map_timing(scope, _find_thread_path(structure), self._notes)):
+        if not structure.parts and (timing := map_timing(scope, _find_thread_path(structure))):
             body["timing"] = timing
         return body
 
@@ -109,7 +108,7 @@ class ComponentBuilder:
         resolved, body = structure.resolved, {}
         path = _find_thread_path(structure)
         thread = self._resolver.resolve(structure.thread.use) if structure.thread else None
-        timing = map_timing(scope, path, self._notes)
+        timing = map_timing(scope, path)
         if structure.thread:
             if kept := keep_thread(scope, path, thread):
                 hints["threads"] = {structure.thread.written.name: kept}
@@ -133,7 +132,7 @@ class ComponentBuilder:
             else:
                 port_body = reach_port(body["components"][consumer.part.id], "inputs", consumer.port.id)
                 join_input(port_body, reference, producer.port, consumer.port)
-        set_media(structure, body.get("components", {}), scope, self._notes)
+        set_media(structure, body.get("components", {}), scope)
 
 
 def add_source(port_body: Body, reference: str) -> None:
@@ -158,7 +157,7 @@ def reach_port(body: Body, section: str, port_id: str) -> Body:
     return port_body
 
 
-def set_media(structure: ClassifierStructure, bodies: dict[str, Body], scope: PropertyScope, notes: NoteList) -> None:
+def set_media(structure: ClassifierStructure, bodies: dict[str, Body], scope: PropertyScope) -> None:
     """Say what the ports of devices travel over: the bus that a connection is bound to.
 
     Of a model that archgen wrote, the ports say it.
@@ -177,7 +176,7 @@ def set_media(structure: ClassifierStructure, bodies: dict[str, Body], scope: Pr
             continue
         if not from_device and not all(to_devices):
             words = "what a device and programs read alike has no medium of its own"
-            notes.add("connection", words, wires[0].connection.span)
+            scope.resolver.notes.add("connection", words, wires[0].connection.span)
             continue
         media = {find_medium(wire, structure, scope) for wire in wires}
         medium = min(media) if len(media) == 1 else "physical"
@@ -231,17 +230,11 @@ def _is_triggered(structure: ClassifierStructure, thread: ResolvedClassifier | N
 
 
 def _keep_connection_names(structure: ClassifierStructure, scope: PropertyScope) -> Body:
-    names = (
-        {}
-        if scope.resolver.names.is_own
-        else {
-            connection.name: f"{'.'.join(connection.source)} -> {'.'.join(connection.target)}"
-            for connection in {id(wire.connection): wire.connection for wire in structure.wires}.values()
-            if connection.name
-            and (
-                scope.find((connection.name.lower(),), "topic_properties::name")
-                or scope.find((connection.name.lower(),), "actual_connection_binding")
-            )
-        }
-    )
+    if scope.resolver.names.is_own:
+        return {}
+    names = {
+        connection.name: f"{'.'.join(connection.source)} -> {'.'.join(connection.target)}"
+        for connection in {id(wire.connection): wire.connection for wire in structure.wires}.values()
+        if connection.name and any(scope.find((connection.name.lower(),), key) for key in _TELLING_PROPERTIES)
+    }
     return {"connections": names} if names else {}

@@ -38,7 +38,7 @@ def _is_library_function(part: ResolvedPart) -> bool:
     return part.use.full_name.lower().rpartition("::")[2] in {"function", ""}
 
 
-def keep_structure(structure: ClassifierStructure, scope: PropertyScope, notes: NoteList) -> dict[str, Any]:
+def keep_structure(structure: ClassifierStructure, scope: PropertyScope) -> dict[str, Any]:
     """Return the hints of what stands in a component beside its parts."""
     resolved = structure.resolved
     hints: dict[str, Any] = {}
@@ -70,13 +70,12 @@ def keep_structure(structure: ClassifierStructure, scope: PropertyScope, notes: 
         for connection in structure.access_connections.values()
         if connection.kind != "parameter" and connection.name not in library_names and not resolved.known.is_of_library
     }
-    if scope.resolver.names.is_own:
-        return hints | _keep_data(structure, scope, notes)
-    if joined:
-        hints["access_connections"] = joined
-    if flows := _keep_flows(structure, scope):
-        hints["flows"] = flows
-    return hints | _keep_data(structure, scope, notes)
+    if not scope.resolver.names.is_own:
+        if joined:
+            hints["access_connections"] = joined
+        if flows := _keep_flows(structure, scope):
+            hints["flows"] = flows
+    return hints | _keep_data(structure, scope)
 
 
 def _list_own_ends(connection: AadlConnection) -> list[Path]:
@@ -98,7 +97,7 @@ def _keep_flows(structure: ClassifierStructure, scope: PropertyScope) -> dict[st
     return flows
 
 
-def _keep_data(structure: ClassifierStructure, scope: PropertyScope, notes: NoteList) -> dict[str, Any]:
+def _keep_data(structure: ClassifierStructure, scope: PropertyScope) -> dict[str, Any]:
     hints: dict[str, Any] = {}
     for name, part in structure.resolved.parts.items():
         classifier = part.use.full_name
@@ -109,7 +108,7 @@ def _keep_data(structure: ClassifierStructure, scope: PropertyScope, notes: Note
             association = scope.find((name,), "source_text")
             if association and (texts := read_texts(association.value)):
                 state = {"schema": texts[0], **state}
-                check_schema_file(texts[0], association, notes)
+                check_schema_file(texts[0], association, scope.resolver.notes)
             if state:
                 hints["internal_state"] = state
         elif part.category in {"data", "memory"}:

@@ -7,12 +7,11 @@ from collections.abc import Mapping
 from archgen.plugin.importing import make_id, make_unique_id
 from archgen.plugin.model import MEDIUM_NAMES
 from archgen.plugins.aadl.aadl_tree import AadlNumber, AadlRange, AadlRecord, AadlValue, Path
-from archgen.plugins.aadl.archgen_words import find_own_count, find_own_text
+from archgen.plugins.aadl.archgen_words import find_own_count, find_own_text, read_own_words
 from archgen.plugins.aadl.bus_names import name_bus_medium
 from archgen.plugins.aadl.component_bodies import Body
 from archgen.plugins.aadl.element_hints import keep_sources
 from archgen.plugins.aadl.hardware_tree import HardwareFinder, HardwarePart, HardwareTree
-from archgen.plugins.aadl.import_notes import NoteList
 from archgen.plugins.aadl.property_values import (
     PropertyScope,
     read_bandwidth,
@@ -28,6 +27,7 @@ from archgen.plugins.aadl.structures import ClassifierStructure
 _LIBRARY_BUSES = frozenset({"ros::topics", "ros::services"})
 """The buses of the library to which all topics and services are bound."""
 _BUSES = frozenset({"bus", "virtual bus"})
+_HOST_KEYS = {"title": "title", "description": "description", "scheduling": "scheduling"}
 _SCHEDULING = {
     "edf": "edf",
     "earliest_deadline_first_protocol": "edf",
@@ -46,16 +46,15 @@ _SCHEDULING = {
 class HardwareMapper:
     """Makes hosts and links of all roots."""
 
-    def __init__(self, resolver: ClassifierResolver, notes: NoteList) -> None:
-        """Look up by `resolver`."""
+    def __init__(self, resolver: ClassifierResolver) -> None:
         self.hosts: dict[str, Body] = {}
         self.containers: dict[str, Body] = {}
         self.links: dict[str, Body] = {}
-        self._resolver, self._notes = resolver, notes
+        self._resolver = resolver
 
     def map_system(self, system: LaunchedSystem) -> dict[Path, str]:
         """Add the hosts and links of a root; return the hosts of its programs."""
-        finder = HardwareFinder(self._resolver, self._notes)
+        finder = HardwareFinder(self._resolver)
         finder.walk(system.structure.resolved, system.scope)
         tree = finder.tree
         host_ids: dict[Path, str] = {}
@@ -89,9 +88,7 @@ class HardwareMapper:
 
     def _add_container(self, container: str, hardware: HardwarePart, host: str) -> None:
         body: Body = {"host": host} if host else {}
-        for key in ("title", "scheduling"):
-            if text := find_own_text(hardware.scope, (), key):
-                body[key] = text
+        body |= read_own_words(hardware.scope, (), {"title": "title", "scheduling": "scheduling"})
         threads = find_own_count(hardware.scope, (), "threads")
         self.containers[container] = body if threads is None else {**body, "threads": threads}
 
@@ -115,10 +112,7 @@ class HardwareMapper:
         if hardware.part.category != "processor":
             hints["category"] = hardware.part.category
         hints |= keep_sources(hardware.scope, ())
-        body: Body = {}
-        for key in ("title", "description", "scheduling"):
-            if text := find_own_text(hardware.scope, (), key):
-                body[key] = text
+        body: Body = read_own_words(hardware.scope, (), _HOST_KEYS)
         cores = find_own_count(hardware.scope, (), "cores")
         if cores is not None:
             body["cores"] = cores
@@ -128,7 +122,7 @@ class HardwareMapper:
             body["scheduling"] = _SCHEDULING[word]
         elif protocol:
             words = f"the scheduling `{word or 'written here'}` has no word here"
-            self._notes.add_counted("Scheduling_Protocol", words, protocol.span)
+            self._resolver.notes.add_counted("Scheduling_Protocol", words, protocol.span)
         self.hosts[host_id] = {**body, "hints": {"aadl": hints}} if hints else body
         return host_id
 
@@ -137,8 +131,7 @@ class HardwareMapper:
         own_id = find_own_text(scope, (), "id")
         link_id = make_unique_id(make_id(own_id or part.written.name, "link"), self.links.keys())
         body: Body = {"connects": ends} if ends else {}
-        if title := find_own_text(scope, (), "title"):
-            body["title"] = title
+        body |= read_own_words(scope, (), {"title": "title"})
         medium = find_own_text(scope, (), "protocol") or name_bus_medium(part)
         is_known = medium in MEDIUM_NAMES and not self._resolver.names.is_own
         body |= {"protocol": medium} if is_known or find_own_text(scope, (), "protocol") else {}

@@ -9,7 +9,6 @@ from archgen.plugins.aadl.aadl_tree import AadlProperty, Path
 from archgen.plugins.aadl.archgen_words import find_own_text
 from archgen.plugins.aadl.bus_names import read_bound_path
 from archgen.plugins.aadl.classifier_names import fold_property_name
-from archgen.plugins.aadl.import_notes import NoteList
 from archgen.plugins.aadl.property_values import PropertyScope, read_references
 from archgen.plugins.aadl.resolved_classifiers import ClassifierResolver, ResolvedClassifier, ResolvedPart
 from archgen.plugins.aadl.structures import HARDWARE_CATEGORIES, fold_part_path
@@ -74,10 +73,9 @@ class HardwareTree:
 class HardwareFinder:
     """Goes through all parts of a system."""
 
-    def __init__(self, resolver: ClassifierResolver, notes: NoteList) -> None:
-        """Look up by `resolver`."""
+    def __init__(self, resolver: ClassifierResolver) -> None:
         self.tree = HardwareTree()
-        self._resolver, self._notes = resolver, notes
+        self._resolver = resolver
 
     def walk(self, resolved: ResolvedClassifier, scope: PropertyScope, path: Path = ()) -> None:
         """Add all that stands in a classifier at a path."""
@@ -108,15 +106,15 @@ class HardwareFinder:
         # What is written farther out was found before, and counts.
         for (target, name), association in _list_bindings(resolved):
             if name == "actual_processor_binding":
-                scope.used.add(association)
+                self._resolver.mark_used(association)
                 references = read_references(association.value)
                 if references:
                     self.tree.bindings.setdefault((*path, *target), (*path, *references[0]))
                 if len(references) > 1:
                     words = "of several processors the first is taken"
-                    self._notes.add("Actual_Processor_Binding", words, association.span, fate="noted")
+                    self._resolver.notes.add("Actual_Processor_Binding", words, association.span, fate="noted")
             elif name == "actual_connection_binding" and target:
-                scope.used.add(association)
+                self._resolver.mark_used(association)
                 for reference in read_references(association.value)[:1]:
                     self.tree.bound_connections.setdefault((*path, *reference), {})[path, target[-1]] = None
         for connection in resolved.connections.values():

@@ -9,7 +9,6 @@ class NoteList:
     """Notes in the order in which they were found; what is the same in many places is one note with a count."""
 
     def __init__(self) -> None:
-        """Start without any note."""
         self._notes: dict[object, tuple[ImportNote, int]] = {}
 
     def add(self, kind: str, message: str, span: Span, help_line: str = "", fate: str = "not taken") -> None:

@@ -4,9 +4,8 @@ from __future__ import annotations
 
 from archgen.plugin.importing import make_id, make_unique_id
 from archgen.plugins.aadl.classifier_names import KnownClassifier, find_only_implementations
-from archgen.plugins.aadl.import_notes import NoteList
-from archgen.plugins.aadl.property_values import PropertyScope, UsedProperties, read_first_text
-from archgen.plugins.aadl.resolved_classifiers import ClassifierResolver, ClassifierUse, ResolvedClassifier
+from archgen.plugins.aadl.property_values import fold_value, read_first_text
+from archgen.plugins.aadl.resolved_classifiers import ClassifierResolver
 from archgen.plugins.aadl.structures import ClassifierStructure, StructureFinder
 
 _TYPE_CATEGORIES = frozenset({"system", "process", "device", "abstract"})
@@ -15,11 +14,10 @@ _TYPE_CATEGORIES = frozenset({"system", "process", "device", "abstract"})
 class ModelRoots:
     """The systems that are part of no other, and the component types by id."""
 
-    def __init__(self, resolver: ClassifierResolver, finder: StructureFinder, notes: NoteList) -> None:
-        """Look at all classifiers that `resolver` knows."""
+    def __init__(self, resolver: ClassifierResolver, finder: StructureFinder) -> None:
         self.roots: list[ClassifierStructure] = []
         self.types: dict[str, ClassifierStructure] = {}
-        self._resolver, self._finder, self._notes = resolver, finder, notes
+        self._resolver, self._finder = resolver, finder
         self._uses: dict[int, int] = {}
         self._used_structures: dict[int, ClassifierStructure] = {}
         self._extended: set[int] = set()
@@ -41,13 +39,10 @@ class ModelRoots:
             own_type = self._resolver.names.find(known.classifier.name.partition(".")[0], known.package)
             name, known = (own_type.classifier.extends, own_type) if own_type else ("", known)
         base = self._resolver.names.find(name, known.package) if name else None
-        resolved = self._resolver.resolve(ClassifierUse(name, base)) if base else None
-        if resolved is None or resolved is structure.resolved:
+        # Where more extend one another than are followed, it is none of the ancestors.
+        if base is None or base is structure.resolved.known or base not in structure.resolved.ancestors:
             return ""
-        if all(ancestor is not resolved.known for ancestor in structure.resolved.ancestors):
-            # More extend one another than are followed.
-            return ""
-        return self._type_ids.get(id(self._finder.find(resolved)), "")
+        return self._type_ids.get(id(self._find_structure(base)), "")
 
     def is_single(self, structure: ClassifierStructure) -> bool:
         """Whether something stands in one place alone, and is no component type."""
@@ -87,8 +82,7 @@ class ModelRoots:
             self._used_structures[id(structure)] = structure
 
     def _find_structure(self, known_classifier: KnownClassifier) -> ClassifierStructure:
-        resolved = self._resolver.resolve(ClassifierUse(known_classifier.full_name, known_classifier))
-        return self._finder.find(resolved or ResolvedClassifier(known_classifier))
+        return self._finder.find(self._resolver.resolve_known(known_classifier))
 
     def _list_named(self, known_classifiers: list[KnownClassifier]) -> set[str]:
         """Return the keys of what is extended; remember those of what is a part."""
@@ -122,9 +116,8 @@ class ModelRoots:
         category = structure.resolved.category
         if category not in _TYPE_CATEGORIES and category != "thread group":
             return
-        wanted = read_first_text(
-            PropertyScope(self._resolver, UsedProperties(), structure.resolved).value((), "archgen::component_type")
-        )
+        written = structure.resolved.properties.get(((), "archgen::component_type"))
+        wanted = read_first_text(fold_value(written.value, self._resolver.names)) if written else ""
         is_reused = self._uses.get(id(structure), 0) != 1 or id(structure) in self._extended
         if not (wanted or is_reused or self._has_reused_base(structure)):
             return
@@ -139,9 +132,7 @@ class ModelRoots:
     def _has_reused_base(self, structure: ClassifierStructure) -> bool:
         """Whether it extends what is a component type: then it is one, made from that."""
         return any(
-            entry.classifier.category in _TYPE_CATEGORIES
-            and (resolved := self._resolver.resolve(ClassifierUse(entry.full_name, entry))) is not None
-            and id(self._finder.find(resolved)) in self._extended
+            entry.classifier.category in _TYPE_CATEGORIES and id(self._find_structure(entry)) in self._extended
             for entry in structure.resolved.ancestors
         )
 

@@ -9,8 +9,7 @@ from archgen.plugin.importing import make_id, make_unique_id
 from archgen.plugins.aadl.aadl_data_types import AadlDataTypes
 from archgen.plugins.aadl.aadl_tree import Path
 from archgen.plugins.aadl.archgen_words import find_own_text, is_marked, read_port_words
-from archgen.plugins.aadl.import_notes import NoteList
-from archgen.plugins.aadl.property_values import PropertyScope, UsedProperties
+from archgen.plugins.aadl.property_values import PropertyScope
 from archgen.plugins.aadl.resolved_classifiers import ClassifierResolver, ResolvedClassifier, ResolvedPort
 
 PORT_KINDS = frozenset({"data port", "event data port", "event port", "feature", "subprogram access"})
@@ -70,17 +69,14 @@ class MappedPorts:
 class PortMapper:
     """Maps the features of classifiers, each classifier once."""
 
-    def __init__(
-        self, resolver: ClassifierResolver, types: AadlDataTypes, used: UsedProperties, notes: NoteList
-    ) -> None:
-        """Name types by `types`."""
-        self._resolver, self._types, self._used, self._notes = resolver, types, used, notes
+    def __init__(self, resolver: ClassifierResolver, types: AadlDataTypes) -> None:
+        self._resolver, self._types, self._notes = resolver, types, resolver.notes
         self._mapped: dict[int, MappedPorts] = {}
 
     def map_ports(self, resolved: ResolvedClassifier) -> MappedPorts:
         """Return the ports of a classifier."""
         if id(resolved) not in self._mapped:
-            mapped = MappedPorts(PropertyScope(self._resolver, self._used, resolved))
+            mapped = MappedPorts(PropertyScope(self._resolver, resolved))
             used: tuple[set[str], set[str]] = (set(), set())
             for port in resolved.ports.values():
                 self._add_port(mapped, port, (), used, is_inverse=False)

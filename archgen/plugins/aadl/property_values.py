@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from fractions import Fraction
 
 from archgen.plugins.aadl.aadl_tree import (
@@ -33,21 +33,6 @@ _MAX_PLACES = 18
 
 
 @dataclass(slots=True)
-class UsedProperties:
-    """Associations that were taken, by identity, so that the others can be told."""
-
-    ids: set[int] = field(default_factory=set)
-
-    def add(self, association: AadlProperty | None) -> None:
-        """Remember one, with what it was put together from."""
-        waiting = [association] if association else []
-        while waiting:
-            each = waiting.pop()
-            self.ids.add(id(each))
-            waiting += each.made_from
-
-
-@dataclass(slots=True)
 class PropertyScope:
     """Where a classifier stands: the associations around it count before its own.
 
@@ -55,7 +40,6 @@ class PropertyScope:
     """
 
     resolver: ClassifierResolver
-    used: UsedProperties
     inner: ResolvedClassifier | None
     layers: tuple[tuple[ResolvedClassifier, Path], ...] = ()
     hidden: ResolvedClassifier | None = None
@@ -68,12 +52,12 @@ class PropertyScope:
         found.append(self._find_inside(self.inner, path, name) if self.inner else None)
         for association in found:
             # The others are written over: they are not left out.
-            self.used.add(association)
+            self.resolver.mark_used(association)
         return next(filter(None, found), None)
 
     def _find_inside(self, resolved: ResolvedClassifier, path: Path, name: str) -> AadlProperty | None:
         if found := resolved.properties.get((path, name)):
-            self.used.add(found)
+            self.resolver.mark_used(found)
             return found
         if not path:
             return None
@@ -97,7 +81,7 @@ class PropertyScope:
         for association in reversed(written):
             paths = [tuple(step.lower() for step in target) for target in association.paths] or [()]
             if path in paths and fold_property_name(association.name) == name:
-                self.used.add(association)
+                self.resolver.mark_used(association)
                 return association
         return None
 
@@ -119,7 +103,7 @@ class PropertyScope:
         for outer, prefix in reversed(self.layers):
             for length in range(len(prefix) - 1, -1, -1):
                 if found := outer.properties.get((prefix[:length], name)):
-                    self.used.add(found)
+                    self.resolver.mark_used(found)
                     return found
         return None
 
@@ -136,7 +120,7 @@ class PropertyScope:
             layers.append((self.inner, (name,)))
         if part.written.properties:
             layers.append((_wrap_properties(part), ()))
-        return PropertyScope(self.resolver, self.used, inner, tuple(layers))
+        return PropertyScope(self.resolver, inner, tuple(layers))
 
     def find_hidden(self, path: Path, name: str) -> AadlProperty | None:
         """Return what the type of an instance itself says of it."""
@@ -146,7 +130,7 @@ class PropertyScope:
         """Return what is written around an instance of something in whose type a subcomponent stands, for that."""
         name = part.written.name.lower()
         layers = tuple((outer, (*prefix, name)) for outer, prefix in self.layers)
-        return PropertyScope(self.resolver, self.used, None, layers, self.hidden, (*self.hidden_path, name))
+        return PropertyScope(self.resolver, None, layers, self.hidden, (*self.hidden_path, name))
 
     def says_anything(self) -> bool:
         """Whether an association around the classifier applies to it or to something in it, or is handed down to it."""
@@ -158,7 +142,7 @@ class PropertyScope:
 
     def only_around(self) -> PropertyScope:
         """Return the scope without the classifier's own associations: what is written of this instance alone."""
-        return PropertyScope(self.resolver, self.used, None, self.layers, self.inner)
+        return PropertyScope(self.resolver, None, self.layers, self.inner)
 
 
 def _wrap_properties(part: ResolvedPart) -> ResolvedClassifier:

@@ -37,13 +37,27 @@ class ClassifierResolver:
     """Writes classifiers out, each once for the values of its prototypes."""
 
     def __init__(self, names: ClassifierNames, notes: NoteList) -> None:
-        """Look names up in `names`, and tell what is in none."""
         self.names, self.notes = names, notes
+        self.used: set[int] = set()
+        """Associations that were taken, by identity, so that the others can be told."""
         self.overridden: set[int] = set()
         """Associations, by identity, that others write over where they stand."""
         self._resolved: dict[tuple[str, str], ResolvedClassifier] = {}
         self._open: set[int] = set()
         self._budget = WorkBudget(_MAX_STEPS)
+
+    def mark_used(self, association: AadlProperty | None) -> None:
+        """Remember an association that was taken, with what it was put together from."""
+        waiting = [association] if association else []
+        while waiting:
+            each = waiting.pop()
+            self.used.add(id(each))
+            waiting += each.made_from
+
+    def resolve_known(self, known_classifier: KnownClassifier) -> ResolvedClassifier:
+        """Return a classifier of the files with all that it inherits."""
+        use = ClassifierUse(known_classifier.full_name, known_classifier)
+        return self.resolve(use) or ResolvedClassifier(known_classifier)
 
     def resolve(self, use: ClassifierUse) -> ResolvedClassifier | None:
         """Return what is used with all that it inherits, or None where it is in no file."""

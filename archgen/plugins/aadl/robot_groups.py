@@ -9,10 +9,9 @@ from archgen.plugins.aadl.aadl_tree import Path
 from archgen.plugins.aadl.archgen_words import find_own_text, read_component_words
 from archgen.plugins.aadl.component_bodies import Body, ComponentBuilder, join_input, reach_port, set_media
 from archgen.plugins.aadl.element_hints import keep_sources, keep_structure
-from archgen.plugins.aadl.import_notes import NoteList
 from archgen.plugins.aadl.model_roots import ModelRoots
 from archgen.plugins.aadl.port_mapping import MappedPort
-from archgen.plugins.aadl.property_values import PropertyScope, UsedProperties
+from archgen.plugins.aadl.property_values import PropertyScope
 from archgen.plugins.aadl.resolved_classifiers import ClassifierResolver
 from archgen.plugins.aadl.structures import ClassifierStructure, StructuredPart, WireEnd
 
@@ -74,23 +73,14 @@ class LaunchedSystem:
 class GroupBuilder:
     """Builds the groups of all roots."""
 
-    def __init__(
-        self,
-        resolver: ClassifierResolver,
-        roots: ModelRoots,
-        builder: ComponentBuilder,
-        used: UsedProperties,
-        notes: NoteList,
-    ) -> None:
-        """Build components by `builder`."""
+    def __init__(self, resolver: ClassifierResolver, roots: ModelRoots, builder: ComponentBuilder) -> None:
         self.groups: dict[str, Body] = {}
         self.systems: list[LaunchedSystem] = []
         self._resolver, self._roots, self._builder = resolver, roots, builder
-        self._used, self._notes = used, notes
 
     def add_root(self, root: ClassifierStructure) -> None:
         """Build the groups of a root."""
-        scope = PropertyScope(self._resolver, self._used, root.resolved)
+        scope = PropertyScope(self._resolver, root.resolved)
         system = LaunchedSystem(root.resolved.known.full_name, root, scope, [])
         parts = list(root.parts.values())
         grouped = {part.name: part for part in parts if self._is_group(part)}
@@ -131,8 +121,8 @@ class GroupBuilder:
         if not self._resolver.names.is_own:
             hints = {"name": name} if name != group_id else {}
             hints["classifier"] = structure.resolved.known.full_name
-        own_scope = PropertyScope(self._resolver, self._used, structure.resolved)
-        hints |= keep_sources(own_scope, ()) | keep_structure(structure, scope, self._notes)
+        own_scope = PropertyScope(self._resolver, structure.resolved)
+        hints |= keep_sources(own_scope, ()) | keep_structure(structure, scope)
         kept = {"hints": {"aadl": hints}} if hints else {}
         # What archgen says of the launch as a whole is the project's.
         words = read_component_words(scope) if scope.layers else {}
@@ -161,7 +151,7 @@ class GroupBuilder:
             elif is_root and from_here and consumer.part is None and producer.part:
                 body = reach_port(frame.bodies[producer.part.id], "outputs", producer.port.id)
                 body["external"] = consumer.port.written_name
-        set_media(frame.structure, frame.bodies, frame.scope, self._notes)
+        set_media(frame.structure, frame.bodies, frame.scope)
 
     def _wire_groups(self, system: LaunchedSystem) -> None:
         frames = {frame.path[0]: frame for frame in system.frames if frame.path}

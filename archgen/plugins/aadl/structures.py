@@ -8,9 +8,8 @@ from dataclasses import dataclass, field
 from archgen.plugin.importing import make_id, make_unique_id
 from archgen.plugins.aadl.aadl_tree import AadlConnection, Path
 from archgen.plugins.aadl.archgen_words import find_own_text
-from archgen.plugins.aadl.import_notes import NoteList
 from archgen.plugins.aadl.port_mapping import MappedPort, MappedPorts, PortMapper
-from archgen.plugins.aadl.property_values import PropertyScope, UsedProperties
+from archgen.plugins.aadl.property_values import PropertyScope
 from archgen.plugins.aadl.resolved_classifiers import ClassifierResolver, ResolvedClassifier, ResolvedPart
 
 COMPONENT_CATEGORIES = frozenset({"system", "process", "device", "abstract", "thread", "thread group"})
@@ -106,9 +105,8 @@ class ClassifierStructure:
 class StructureFinder:
     """Finds how classifiers are built, each once."""
 
-    def __init__(self, resolver: ClassifierResolver, mapper: PortMapper, used: UsedProperties, notes: NoteList) -> None:
-        """Look up by `resolver`, map ports by `mapper`."""
-        self._resolver, self._mapper, self._used, self._notes = resolver, mapper, used, notes
+    def __init__(self, resolver: ClassifierResolver, mapper: PortMapper) -> None:
+        self._resolver, self._mapper, self._notes = resolver, mapper, resolver.notes
         self._found: dict[int, ClassifierStructure] = {}
         self._open: list[ResolvedClassifier] = []
 
@@ -167,7 +165,7 @@ class StructureFinder:
 
     def _read_own_text(self, around: ResolvedClassifier, part: ResolvedPart, key: str) -> str:
         """Return what an export of archgen's wrote at a part, or nothing."""
-        scope = PropertyScope(self._resolver, self._used, around)
+        scope = PropertyScope(self._resolver, around)
         return find_own_text(scope, (part.written.name.lower(),), key)
 
     def _join_thread(self, structure: ClassifierStructure, thread: ResolvedPart) -> None:

@@ -82,7 +82,6 @@ class NodeWriter:
     """Writes a node for each process where it stands."""
 
     def __init__(self) -> None:
-        """Start without any node."""
         self.nodes: dict[str, Body] = {}
 
     def add_nodes(self, system: LaunchedSystem, hosts: dict[Path, str]) -> None:

@@ -6,7 +6,6 @@ from typing import Any
 
 from archgen.plugins.aadl.aadl_tree import Path
 from archgen.plugins.aadl.archgen_words import find_own_text
-from archgen.plugins.aadl.import_notes import NoteList
 from archgen.plugins.aadl.port_mapping import MappedPorts
 from archgen.plugins.aadl.property_values import PropertyScope, read_count, read_duration, read_time_range, read_word
 from archgen.plugins.aadl.resolved_classifiers import ResolvedClassifier
@@ -33,9 +32,9 @@ def fits_role(role: str, ports: MappedPorts) -> bool:
     }[role]
 
 
-def map_timing(scope: PropertyScope, path: Path, notes: NoteList) -> dict[str, Any]:
+def map_timing(scope: PropertyScope, path: Path) -> dict[str, Any]:
     """Return what the properties of a thread say: all but its trigger."""
-    timing = _map_dispatch(scope, path, notes)
+    timing = _map_dispatch(scope, path)
     for name, key in (("deadline", "deadline"), ("dispatch_jitter", "jitter")):
         if text := read_duration(scope.value(path, name)):
             timing[key] = text
@@ -49,7 +48,7 @@ def map_timing(scope: PropertyScope, path: Path, notes: NoteList) -> dict[str, A
     return timing if priority is None else {**timing, "priority": priority}
 
 
-def _map_dispatch(scope: PropertyScope, path: Path, notes: NoteList) -> dict[str, Any]:
+def _map_dispatch(scope: PropertyScope, path: Path) -> dict[str, Any]:
     """Return behaviour and period."""
     timing: dict[str, Any] = {}
     protocol_property = scope.find(path, "dispatch_protocol")
@@ -64,7 +63,7 @@ def _map_dispatch(scope: PropertyScope, path: Path, notes: NoteList) -> dict[str
         timing["behaviour"] = "once"
     elif protocol_property is not None:
         words = f"a thread that is dispatched as `{protocol or 'this'}` has no behaviour here"
-        notes.add_counted(f"Dispatch_Protocol {protocol}", words, protocol_property.span)
+        scope.resolver.notes.add_counted(f"Dispatch_Protocol {protocol}", words, protocol_property.span)
     period = read_duration(scope.inherited_value(path, "period"))
     rate = find_own_text(scope, path, "rate")
     if rate:
@@ -77,7 +76,7 @@ def _map_dispatch(scope: PropertyScope, path: Path, notes: NoteList) -> dict[str
         if protocol == "sporadic":
             words = "the smallest distance of a sporadic thread's dispatches is no period here"
         if found:
-            notes.add_counted(f"Period of a {protocol} thread", words, found.span)
+            scope.resolver.notes.add_counted(f"Period of a {protocol} thread", words, found.span)
     return timing
 
 

@@ -21,12 +21,14 @@ from archgen.plugin.importing import Span
 _TOKEN = re.compile(
     r"""
       (?P<blank>\s+|--[^\n]*)
-    | (?P<annex>\{\*\*)
+    | (?P<annex>\{\*\*.*?\*\*\})
+    | (?P<open>\{\*\*)
     | (?P<number>[0-9](?:_?[0-9])*\#[0-9A-Fa-f](?:_?[0-9A-Fa-f])*\#(?:[eE]\+?[0-9]+)?
         |[0-9](?:_?[0-9])*(?:\.[0-9](?:_?[0-9])*)?(?:[eE][+-]?[0-9]+)?)
     | (?P<name>[^\W\d]\w*)
     | (?P<text>"(?:[^"\\]++|""|\\.)*+")
     | (?P<sign>\+=>|=>|<->|->|-\[|\]->|::|\.\.|\*\*|[-+*;:,.(){}\[\]^@<>/])
+    | (?P<stray>.)
     """,
     re.VERBOSE | re.DOTALL,
 )
@@ -80,33 +82,20 @@ def scan_tokens(text: str, max_tokens: int = MAX_TOKENS) -> Iterator[Token]:
 
     Raise TooManyTokensError.
     """
-    offset, size, match_token, tokens_left = 0, len(text), _TOKEN.match, max_tokens
-    while offset < size:
-        match = match_token(text, offset)
-        kind = match.lastgroup or "" if match else "stray"
-        if match and kind == "blank":
-            offset = match.end()
+    tokens_left = max_tokens
+    for match in _TOKEN.finditer(text):
+        kind = OPEN_ANNEX if match.lastgroup == "open" else match.lastgroup or ""
+        if kind == "blank":
             continue
         tokens_left -= 1
         if tokens_left < 0:
-            raise TooManyTokensError(offset)
-        if match is None:
-            yield Token(kind, text[offset], offset, text[offset])
-            offset += 1
-            continue
-        if kind == "annex":
-            end = text.find("**}", offset + 3)
-            if end < 0:
-                yield Token(OPEN_ANNEX, "{**", offset, "{**")
-                break
-            yield Token(kind, text[offset : end + 3], offset, "")
-            offset = end + 3
-            continue
+            raise TooManyTokensError(match.start())
         token_text = match.group()
-        yield Token(kind, token_text, offset, token_text.lower() if kind == "name" else token_text)
-        offset = match.end()
+        yield Token(kind, token_text, match.start(), token_text.lower() if kind == "name" else token_text)
+        if kind == OPEN_ANNEX:
+            break
     while True:
-        yield Token(END, "", size, "")
+        yield Token(END, "", len(text), "")
 
 
 def unquote_text(token: Token) -> str:

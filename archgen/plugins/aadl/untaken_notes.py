@@ -7,7 +7,6 @@ from collections.abc import Iterator
 from archgen.plugins.aadl.aadl_tree import AadlConnection, AadlFlow, AadlProperty, Classifier, Modes, Subcomponent
 from archgen.plugins.aadl.classifier_names import ClassifierNames, KnownClassifier, fold_property_name
 from archgen.plugins.aadl.import_notes import NoteList
-from archgen.plugins.aadl.property_values import UsedProperties
 from archgen.plugins.aadl.resolved_classifiers import ClassifierResolver
 
 _TAKEN_PROPERTIES = frozenset(
@@ -23,10 +22,10 @@ _TAKEN_PROPERTIES = frozenset(
 """What is taken of some elements."""
 
 
-def tell_untaken(resolver: ClassifierResolver, used: UsedProperties, notes: NoteList) -> None:
-    """Tell all that was left out; `used` are the associations that were taken."""
-    names = resolver.names
-    written_over = used.ids | resolver.overridden
+def tell_untaken(resolver: ClassifierResolver) -> None:
+    """Tell all that was left out."""
+    names, notes = resolver.names, resolver.notes
+    written_over = resolver.used | resolver.overridden
     known_sets = frozenset(names.property_sets)
     for known in names.known.values():
         classifier = known.classifier
@@ -35,7 +34,7 @@ def tell_untaken(resolver: ClassifierResolver, used: UsedProperties, notes: Note
         for association in _list_associations(classifier):
             if not known.is_of_library and id(association) not in written_over and not _is_computed(association, names):
                 _tell_property(association, known_sets, notes)
-            elif id(association) in used.ids:
+            elif id(association) in resolver.used:
                 _tell_values(association, notes)
         _tell_modes(known, notes)
         if classifier.calls and classifier.category != "subprogram":

@@ -274,54 +274,50 @@ def _record_operation(types: MiddlewareTypes, words: str, operation: Operation, 
         request = {"request": request}
     given = dict(request or {})
     if len(given) > _MOST_ARGUMENTS or len({name_member(name) for name in given}) < len(given):
-        fields = [(name, types.find_written_type(written)) for name, written in given.items()]
+        fields = [(name, types.find_written_type(written, operation.at)) for name, written in given.items()]
         arguments = [("request", types.add_answer(f"{words} {operation.id} request", fields, operation.at))]
     else:
         arguments = [(name, types.find_called_type(written, operation.at)) for name, written in given.items()]
     answer = operation.response
     if isinstance(answer, Mapping):
-        fields = [(name, types.find_written_type(written)) for name, written in answer.items()]
+        fields = [(name, types.find_written_type(written, operation.at)) for name, written in answer.items()]
         made = types.add_answer(f"{words} {operation.id} response", fields, operation.at) if fields else None
     else:
         made = types.find_called_type(answer, operation.at) if answer else None
-    return {
-        "element": f"{component.id} {operation.id}",
-        "span": operation.at,
-        **_record_names(operation.id),
-        "title": operation.id,
-        "port": None,
-        "is_command": is_command(operation),
-        "arguments": [
-            {"name": name_inside(name_member(name), name_port_member(operation.id)), "title": name, "type": each}
-            for name, each in arguments
-        ],
-        "result": made,
-        "description": operation.description or "",
-        "place": write_place(operation.at),
-    }
+    record = _record_called(operation, operation.id, arguments, made, is_command=is_command(operation))
+    return {**record, "element": f"{component.id} {operation.id}", "port": None}
 
 
 def record_served(architecture: Architecture, types: MiddlewareTypes, port: Output) -> dict[str, Any]:
     """Return an output that is called as an operation: a service is waited for, an action is not."""
-    request, answer = types.find_call_parts(port.type)
-    return {
-        "element": port.id,
-        "span": port.at,
-        **_record_names(port.name),
-        "title": port.name,
-        "port": port.name,
-        "is_command": architecture.flow_of(port) == "action",
-        "arguments": [
-            {"name": name_inside("request", name_port_member(port.name)), "title": "request", "type": request}
-        ]
-        if request
-        else [],
-        "result": answer,
-        "description": port.description or "",
-        "place": write_place(port.at),
-    }
+    request, answer = types.find_call_parts(port.type, port.at)
+    arguments = [("request", request)] if request else []
+    is_action = architecture.flow_of(port) == "action"
+    record = _record_called(port, port.name, arguments, answer, is_command=is_action)
+    return {**record, "element": port.id, "port": port.name}
 
 
-def _record_names(name: str) -> dict[str, str]:
+def _record_called(
+    source: Operation | Output,
+    name: str,
+    arguments: Iterable[tuple[str, object]],
+    result: object,
+    *,
+    is_command: bool,
+) -> dict[str, Any]:
     interface = name_port_member(name)
-    return {"name": interface, "member": interface.rstrip("_"), "wire": shorten_wire_name(interface)}
+    return {
+        "span": source.at,
+        "name": interface,
+        "member": interface.rstrip("_"),
+        "wire": shorten_wire_name(interface),
+        "title": name,
+        "is_command": is_command,
+        "arguments": [
+            {"name": name_inside(name_member(each), interface), "title": each, "type": argument_type}
+            for each, argument_type in arguments
+        ],
+        "result": result,
+        "description": source.description or "",
+        "place": write_place(source.at),
+    }

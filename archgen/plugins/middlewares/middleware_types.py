@@ -7,9 +7,10 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterable, Iterator, Mapping
+from dataclasses import replace
 from typing import Any
 
-from archgen.plugin.findings import NO_SPAN, Diagnostic, Span
+from archgen.plugin.findings import NO_SPAN, Diagnostic, Severity, Span
 from archgen.plugin.generating import read_own_hints, tell_left_out, write_place
 from archgen.plugin.model import Architecture
 from archgen.plugin.ros import Interface, InterfaceField
@@ -26,6 +27,9 @@ _LIST = re.compile(r"(?:(?<!\s)\s++)?+\[[^\[\]]*+\]\Z")
 _FOREIGN_TYPE = re.compile(r"[A-Za-z_]\w*(?:::[A-Za-z_]\w*)*\Z", re.ASCII)
 _FOREIGN_FILE = re.compile(r"[A-Za-z0-9_][\w.+-]*(?:/[\w+-][\w.+-]*)*\Z", re.ASCII)
 _TEXT_TYPE = "string"
+_HELP_FOR_UNKNOWN = (
+    "write `fields` at the type or its package's message file, or in `hints` the class that others define"
+)
 _IDL_BACKEND = "openrtm"
 
 
@@ -64,16 +68,20 @@ class MiddlewareTypes:
         """Return what a port holds: what its own hints or those of its type say, else its message, else text."""
         declared = self._architecture.types.get(type_name or "")
         type_hints = read_own_hints(declared.annotations.hints, self._backend) if declared else {}
-        found = self.find_written_type(type_name)
+        found = self._find_data(type_name)
         own_hints = {**type_hints, **read_own_hints(port_hints, self._backend)}
         interface = record_interface(own_hints.get("interface"))
         if "interface" in own_hints and interface is None:
             self._tell(f"`{own_hints['interface']}` is no interface of Player with data", span, str(type_name))
         found["interface"] = interface
         foreign = self._read_foreign(own_hints, span, str(type_name))
-        if not foreign and found["rtm"].startswith(f"{self.space}::"):
+        if foreign:
+            return {**found, **foreign}
+        if not interface:
+            self._tell_unknown(type_name, span)
+        if found["rtm"].startswith(f"{self.space}::"):
             self._timed.setdefault(found["rtm"].rpartition("::")[2], found["idl"])
-        return {**found, **foreign} if foreign else found
+        return found
 
     def find_called_type(self, written: str | None, span: Span) -> dict[str, Any]:
         """Return what an operation takes or answers: what hints of its type say, else what it holds.
@@ -82,27 +90,41 @@ class MiddlewareTypes:
         """
         declared = None if self._backend == _IDL_BACKEND else self._architecture.types.get(written or "")
         hints = read_own_hints(declared.annotations.hints, self._backend) if declared else {}
-        found = self.find_written_type(written)
-        return {**found, **self._read_foreign(hints, span, str(written))}
+        foreign = self._read_foreign(hints, span, str(written))
+        return {**self._find_data(written), **foreign} if foreign else self.find_written_type(written, span)
 
-    def find_written_type(self, written: str | None) -> dict[str, Any]:
-        """Return what a conceptual type, a message or a primitive type holds; of what nobody says the fields it is text."""
-        text = (written or "").strip()
-        is_list = bool(_LIST.search(text))
-        base = _LIST.sub("", text)
-        declared = self._architecture.types.get(base)
-        message = declared.message if declared else None
-        definitions = self._architecture.interfaces.definitions
-        if message is None and base in definitions:
-            message = base
-        if message in definitions and message is not None:
+    def find_written_type(self, written: str | None, span: Span) -> dict[str, Any]:
+        """Return what a conceptual type, a message or a primitive type holds; of what nobody says the fields it is text, which is told."""
+        self._tell_unknown(written, span)
+        return self._find_data(written)
+
+    def _find_data(self, written: str | None) -> dict[str, Any]:
+        base, is_list = _split_list(written)
+        message = self._find_message(base)
+        if message is not None:
             record = self._find_record(message, 0)
             if record:
                 return self._describe_record(record, is_list=is_list)
         word = base.casefold()
         return self.describe_primitive(ALIASES.get(word, word if word in PRIMITIVES else _TEXT_TYPE), is_list=is_list)
 
-    def find_call_parts(self, type_name: str | None) -> list[dict[str, Any] | None]:
+    def _find_message(self, base: str) -> str | None:
+        """Return the message whose fields a type has, None where nobody says them."""
+        declared = self._architecture.types.get(base)
+        message = (declared.message if declared else None) or base
+        return message if message in self._architecture.interfaces.definitions else None
+
+    def _tell_unknown(self, written: str | None, span: Span) -> None:
+        """Tell that a type is text because nobody says its fields: a receiver could not know what the text means."""
+        base, _ = _split_list(written)
+        word = base.casefold()
+        if base and word not in ALIASES and word not in PRIMITIVES and self._find_message(base) is None:
+            declared = self._architecture.types.get(base)
+            message = (declared.message if declared else None) or base
+            text = f"nobody says the fields of `{message}`: it is text in what is generated"
+            self._tell(text, declared.at if declared else span, base, Severity.NOTE, _HELP_FOR_UNKNOWN)
+
+    def find_call_parts(self, type_name: str | None, span: Span) -> list[dict[str, Any] | None]:
         """Return the request and the answer of a service or an action: None for one without fields, and of what nobody says
         the fields they are text.
         """
@@ -110,7 +132,7 @@ class MiddlewareTypes:
         definition = self._architecture.interfaces.definitions.get((declared.message if declared else None) or "")
         if definition is None:
             texts = (declared.request, declared.response) if declared else ("", "")
-            return [self.find_written_type(each) for each in texts]
+            return [self.find_written_type(each, span) for each in texts]
         parts: list[dict[str, Any] | None] = []
         for number in range(2):
             record = self._find_record(definition.name, number) if definition.parts[number] else None
@@ -264,6 +286,7 @@ class MiddlewareTypes:
         if "/" not in base:
             return self.describe_primitive(base if base in PRIMITIVES else _TEXT_TYPE, is_list=is_list)
         if base not in self._architecture.interfaces.definitions:
+            self._tell_unknown(base, span)
             return self.describe_primitive(_TEXT_TYPE, is_list=is_list)
         if base not in self._records:
             # What it holds has its record already, unless it holds this one.
@@ -276,10 +299,19 @@ class MiddlewareTypes:
             else self.describe_primitive(_TEXT_TYPE, is_list=is_list)
         )
 
-    def _tell(self, message: str, span: Span, element: str) -> None:
+    def _tell(
+        self, message: str, span: Span, element: str, severity: Severity = Severity.ERROR, help_line: str | None = None
+    ) -> None:
         if message not in self._told:
             self._told.add(message)
-            self.findings.append(tell_left_out(message, span, element=element))
+            told = tell_left_out(message, span, element=element, help_line=help_line)
+            self.findings.append(replace(told, severity=severity))
+
+
+def _split_list(written: str | None) -> tuple[str, bool]:
+    """Return what a type is, or its items are, and whether it is a list."""
+    text = (written or "").strip()
+    return _LIST.sub("", text), bool(_LIST.search(text))
 
 
 PRIMITIVES: Mapping[str, tuple[str, str, str, str]] = {

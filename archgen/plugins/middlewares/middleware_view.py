@@ -14,7 +14,7 @@ from fractions import Fraction
 from typing import Any
 
 from archgen.plugin.findings import Diagnostic
-from archgen.plugin.generating import GeneratedView, GenerationContext, read_own_hints, tell_left_out, write_place
+from archgen.plugin.generating import GeneratedView, GenerationContext, tell_left_out, write_place
 from archgen.plugin.model import Architecture, Component, Qos
 from archgen.plugins.middlewares.component_parameters import record_middleware_parameters
 from archgen.plugins.middlewares.middleware_classes import (
@@ -235,9 +235,9 @@ def require_interfaces(
 
 
 def _find_address(context: GenerationContext, host: str) -> str:
-    """Return the name under which other computers find a host: what its hints say, if that is a name, else its id."""
+    """Return the name under which other computers find a host: what it says, if Player can read that, else its id."""
     known = context.architecture.hosts.get(host)
-    written = str(read_own_hints(known.annotations.hints, context.backend).get("address") or "") if known else ""
+    written = (known.address or "") if known else ""
     return written if _ADDRESS.match(written) else shorten_wire_name(name_member(host)) if host else "localhost"
 
 

@@ -16,7 +16,7 @@ from archgen.plugin.generating import (
     write_place,
 )
 from archgen.plugin.model import Architecture
-from archgen.plugin.ros import Interface, InterfaceConstant, InterfaceField
+from archgen.plugin.ros import Interface, InterfaceConstant, InterfaceField, is_ros_1
 from archgen.plugins.middlewares.java_names import JAVA_CLASS_NAMES, choose_java_spellings
 
 _WHOLE_TYPES = frozenset(
@@ -180,7 +180,10 @@ class SimulatedTypes:
         spellings = self.spell_in_java(types.values(), java_package, own_names)
         record["java_imports"] = self.list_java_imports(types.values(), spellings, java_package)
         record["modules"] = [each for each in self.list_modules(types.values()) if each != record["module"]]
-        record["fields"] = [self._record_field(each, types[each.name], spellings) for each in kept]
+        record["fields"] = [
+            self._record_field(each, types[each.name], spellings, self._find_default(definition.name, each))
+            for each in kept
+        ]
         record["constants"] = [
             {"name": each.name, "kind": _name_kind(each.type), "value": value, "comment": each.comment}
             for each in constants
@@ -225,8 +228,14 @@ class SimulatedTypes:
             found.kind, found.record, is_list=True, least=size or 0 if bound and not bound[1] else 0, most=size
         )
 
+    def _find_default(self, message: str, field: InterfaceField) -> str:
+        """Return the default of a field as written; of ROS 2's own messages the one that begins with another value than 0."""
+        if field.default or is_ros_1(self._architecture.distro):
+            return field.default
+        return _ROS_2_DEFAULTS.get(f"{message}.{field.name}", "")
+
     def _record_field(
-        self, field: InterfaceField, value_type: ValueType, spellings: Mapping[str, str]
+        self, field: InterfaceField, value_type: ValueType, spellings: Mapping[str, str], default: str
     ) -> dict[str, object]:
         python_name = make_identifier_in("python", field.name)
         return {
@@ -235,9 +244,13 @@ class SimulatedTypes:
             "java_method": f"with{_capitalise(name_java_field(field.name))}",
             "python_name": python_name,
             "type": self.describe(value_type, spellings),
-            "default": _read_field_default(field.default, value_type),
+            "default": _read_field_default(default, value_type),
             "comment": field.comment,
         }
+
+
+_ROS_2_DEFAULTS = {"geometry_msgs/msg/Quaternion.w": "1"}
+"""What the definitions of ROS 2's common interfaces say of fields that do not begin with 0."""
 
 
 def name_java_field(name: str) -> str:

@@ -5,6 +5,11 @@ PLUGIN = {
     "page": "docs/recordings.md",
     "readers": {"recordings": "archgen.plugins.recordings.recording_import:read_measured"},
     "observers": {
+        "trace": {
+            "rank": 2,
+            "summary": "a trace of ros2_tracing as babeltrace2 prints it",
+            "reader": "archgen.plugins.recordings.trace_observation:observe_trace",
+        },
         "recording": {
             "rank": 2,
             "summary": "a recording: the folder of a bag, its metadata.yaml, .mcap, .db3, or .bag of ROS 1",

@@ -8,7 +8,9 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterable, Iterator, Mapping
+from contextlib import contextmanager, suppress
 from dataclasses import dataclass, field
+from importlib import import_module
 from importlib.util import find_spec
 from pathlib import Path
 from typing import Any
@@ -16,9 +18,12 @@ from typing import Any
 from archgen.plugin import replace
 from archgen.plugin.importing import (
     ForeignFileError,
+    MappingNode,
     ObservationOptions,
     ObservedRobot,
     RecordedTopic,
+    ScalarNode,
+    SequenceNode,
     Span,
     node_to_data,
     open_named_file,
@@ -92,6 +97,7 @@ def _read_metadata(file: Path) -> dict[str, RecordedTopic]:
     if bag is None or not duration:
         words = "it is no metadata of a bag that lasted some time"
         raise ForeignFileError(words, Span.of_file(file.name), "write it again with `ros2 bag reindex FOLDER`")
+    _refuse_repeated_files(bag)
     topics = {}
     for name, count, node, topic in list_bag_topics(bag):
         data: Any = node_to_data(topic)
@@ -99,6 +105,18 @@ def _read_metadata(file: Path) -> dict[str, RecordedTopic]:
         qos = _read_profiles(data.get("offered_qos_profiles"))
         topics[name] = RecordedTopic(name, message, count, duration, is_own_duration=False, qos=qos, at=node.span)
     return topics
+
+
+def _refuse_repeated_files(bag: MappingNode) -> None:
+    """Raise ForeignFileError where metadata name a file twice: it would be unpacked and read so often."""
+    paths = bag.get("relative_file_paths")
+    known = set()
+    for node in paths.items if isinstance(paths, SequenceNode) else ():
+        name = Path(node.text).name if isinstance(node, ScalarNode) else ""
+        if name in known:
+            words = f"it names the file `{name}` twice"
+            raise ForeignFileError(words, node.span, "write it again with `ros2 bag reindex FOLDER`")
+        known.add(name)
 
 
 def _read_profiles(written: object) -> dict[str, Any]:
@@ -157,6 +175,69 @@ def _read_frame(data: bytes, *, is_big_endian: bool) -> str | None:
     return data[_FRAME_AT + 4 : end].rstrip(b"\0").decode("utf-8", "replace")
 
 
+MAX_UNPACKED_BYTES = 2_000_000_000
+"""So much more memory may reading a bag take: a chunk says itself how large it is unpacked, and may lie."""
+_MOST_TIMES = 20
+"""So many times its size may a bag be unpacked, and `MAX_UNPACKED_BYTES` more."""
+_ZSTD_BEGINNINGS = (b"\x28\xb5\x2f\xfd", *(bytes([first]) + b"\x2a\x4d\x18" for first in range(0x50, 0x60)))
+"""How frames begin, and what may stand before them."""
+_MEMORY_FILE = Path("/proc/self/statm")
+
+
+@contextmanager
+def _limit_memory() -> Iterator[None]:
+    """Bound the memory of what is done meanwhile, where the system can: behind it stands a MemoryError."""
+    if not _MEMORY_FILE.exists():
+        yield
+        return
+    import resource
+
+    soft, hard = resource.getrlimit(resource.RLIMIT_AS)
+    used = int(_MEMORY_FILE.read_text(encoding="ascii").split()[0]) * resource.getpagesize()
+    bounds = [each for each in (soft, hard) if each != resource.RLIM_INFINITY]
+    resource.setrlimit(resource.RLIMIT_AS, (min([used + MAX_UNPACKED_BYTES, *bounds]), hard))
+    try:
+        yield
+    finally:
+        resource.setrlimit(resource.RLIMIT_AS, (soft, hard))
+
+
+class _UnpackedTooLargeError(Exception):
+    """A bag holds more, unpacked, than is read."""
+
+
+@dataclass(slots=True)
+class _UnpackedBytes:
+    """How much more may be unpacked."""
+
+    left: int
+
+    def take_bytes(self, count: int) -> None:
+        """Count what is unpacked. Raise _UnpackedTooLargeError."""
+        self.left -= count
+        if self.left < 0:
+            raise _UnpackedTooLargeError
+
+
+def _refuse_large_files(folder: Path, most_bytes: int) -> None:
+    """Raise _UnpackedTooLargeError where packed files of a folder hold more together: rosbags writes them out wholly."""
+    zstd: Any = import_module("rosbags.rosbag2.reader").zstd
+    budget = _UnpackedBytes(most_bytes)
+    for file in _list_regular_files(folder):
+        # One that is broken is told where it is read as a part of the bag.
+        with open_named_file(file) as stream, suppress(zstd.ZstdError, EOFError):
+            if not stream.read(4).startswith(_ZSTD_BEGINNINGS):
+                continue
+            stream.seek(0)
+            with zstd.open(stream) as unpacking:
+                while block := unpacking.read(1_000_000):
+                    budget.take_bytes(len(block))
+
+
+def _list_regular_files(path: Path) -> list[Path]:
+    return [each for each in sorted(path.iterdir() if path.is_dir() else (path,)) if each.is_file()]
+
+
 def _read_messages(path: Path, distro: str) -> dict[str, RecordedTopic]:
     """Return what the messages say of each topic. Raise ForeignFileError for a bag that cannot be read."""
     from rosbags.rosbag1 import Reader as Reader1
@@ -165,8 +246,12 @@ def _read_messages(path: Path, distro: str) -> dict[str, RecordedTopic]:
     is_ros_1 = path.suffix == ".bag"
     counters: dict[str, _TopicCounter] = {}
     start = None
+    most_bytes = MAX_UNPACKED_BYTES + _MOST_TIMES * sum(each.stat().st_size for each in _list_regular_files(path))
+    budget = _UnpackedBytes(most_bytes)
     try:
-        with (Reader1 if is_ros_1 else Reader2)(path) as reader:
+        if path.is_dir():
+            _refuse_large_files(path, most_bytes)
+        with _limit_memory(), (Reader1 if is_ros_1 else Reader2)(path) as reader:
             for connection in reader.connections:
                 message = full_message_name(connection.msgtype) or connection.msgtype
                 has_header = _begins_with_header(message, connection.msgdef.data, distro)
@@ -178,6 +263,15 @@ def _read_messages(path: Path, distro: str) -> dict[str, RecordedTopic]:
             for connection, time, data in reader.messages():
                 start = time if start is None else min(start, time)
                 counters[connection.topic].add(time, data)
+                budget.take_bytes(len(data))
+    except _UnpackedTooLargeError as error:
+        words = f"it unpacks to more than {most_bytes // 1_000_000:,} MB"
+        help_line = "unpack its files first, or give its metadata.yaml alone"
+        raise ForeignFileError(words, Span.of_file(path.name), help_line) from error
+    except MemoryError as error:
+        words = f"a part of it unpacks to more than {MAX_UNPACKED_BYTES // 1_000_000:,} MB"
+        help_line = "record with smaller chunks, or give its metadata.yaml alone"
+        raise ForeignFileError(words, Span.of_file(path.name), help_line) from error
     except Exception as error:  # whatever rosbags makes of a broken file is said in a sentence
         words = f"it cannot be read as a bag: {error}"
         raise ForeignFileError(

@@ -26,25 +26,17 @@ _NUMBER = re.compile(r"-?\d{1,25}(?:\.\d{0,25})?(?:[eE][+-]?\d{1,2})?\Z", re.ASC
 _EMPTY_CELLS = frozenset({"", "nan", "NaN", "<NA>", "None"})
 _MAX_COLUMNS = 10_000
 _ODDITIES = {
-    "unreadable": OddityText(
-        "wrong-value",
-        "{count} row{s} with a cell that is no number, this one first; not counted",
-        Severity.WARNING,
-    ),
+    "unreadable": OddityText("{count} row{s} with a cell that is no number, this one first; not counted"),
     "backwards": OddityText(
-        "wrong-value",
-        "{count} row{s} with an end before the beginning, this one first: a clock was set; not counted",
-        Severity.WARNING,
+        "{count} row{s} with an end before the beginning, this one first: a clock was set; not counted"
     ),
     "short": OddityText(
-        "syntax-error",
         "{count} row{s} with fewer cells than the heading, this one first: the file is cut off; not counted",
-        Severity.WARNING,
+        rule="syntax-error",
     ),
     "lost": OddityText(
-        "wrong-value",
         "{count} row{s} of a path without an end, this one first: lost, or still on its way; not counted",
-        Severity.NOTE,
+        severity=Severity.NOTE,
     ),
 }
 

@@ -21,7 +21,6 @@ class RecordedFigures:
     """Collects what readers find in one or several recordings."""
 
     def __init__(self) -> None:
-        """Start empty."""
         self.diagnostics: list[Diagnostic] = []
         self.observations: list[Observation] = []
         """Figures that a recording gives as such, and not as samples."""

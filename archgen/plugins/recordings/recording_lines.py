@@ -58,17 +58,16 @@ class RecordingSource:
 class OddityText(NamedTuple):
     """How a kind of oddity is reported; the message may hold `{count}`, and `{s}` for the plural."""
 
-    rule: str
     message: str
-    severity: Severity
     help: str | None = None
+    severity: Severity = Severity.WARNING
+    rule: str = "wrong-value"
 
 
 class Oddities:
     """What is odd about a recording: one finding for each kind, however often it occurs."""
 
     def __init__(self, source: RecordingSource) -> None:
-        """Start without any."""
         self._source = source
         self._first_lines: dict[str, int] = {}
         self._counts: dict[str, int] = {}

@@ -34,25 +34,21 @@ _ROUNDING = dict.fromkeys(("min_period", "max_period", "delay"), Fraction(10**6,
 _MAX_TOPICS = 10_000
 _ODDITIES = {
     "reset": OddityText(
-        "wrong-value",
-        "the clock was set back while this was recorded, {count} time{s}: the figures after it count anew",
-        Severity.WARNING,
+        "the clock was set back while this was recorded, {count} time{s}: the figures after it count anew"
     ),
     "backwards": OddityText(
-        "wrong-value",
         "{count} delay{s} below zero: the clocks of sender and receiver differ, and no delay of this log is right",
-        Severity.WARNING,
         "synchronise the computers' clocks (chrony, PTP) and record again",
     ),
     "cut off": OddityText(
-        "syntax-error",
         "the log is cut off: {count} average{s} without the line of extremes, here first",
-        Severity.NOTE,
+        severity=Severity.NOTE,
+        rule="syntax-error",
     ),
     "unreadable": OddityText(
-        "syntax-error",
         "{count} line{s} that `ros2 topic hz` and `delay` do not print, this one first; not counted",
-        Severity.NOTE,
+        severity=Severity.NOTE,
+        rule="syntax-error",
     ),
 }
 

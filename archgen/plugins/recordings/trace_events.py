@@ -183,7 +183,6 @@ class TraceRegistry:
     """The things that the events of initialisation tell of."""
 
     def __init__(self) -> None:
-        """Start without any."""
         self._rows: dict[tuple[str, Process, str], tuple[str, ...]] = {}
         self._names_by_process: dict[Process, set[str]] = {}
         self.node_lines: dict[str, dict[tuple[str, ...], int]] = {}

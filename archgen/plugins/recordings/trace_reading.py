@@ -36,49 +36,36 @@ MAX_CALLBACKS = 50_000
 _TWIN_REASON = "several processes have a node of this name"
 _ODDITIES = {
     "backwards": OddityText(
-        "wrong-value",
         "time goes backwards {count} time{s}, here first: what lasted across is not counted",
-        Severity.WARNING,
         "a clock was set, or two recordings follow one another: give them as two files",
     ),
     "lost": OddityText(
-        "wrong-value",
         "the tracer discarded {count} event{s}, here first: what was going on meanwhile is not counted",
-        Severity.WARNING,
         "record fewer events, or with larger buffers (`subbuffer_size_ust` of the launch action `Trace`)",
     ),
     "undated loss": OddityText(
-        "wrong-value",
         "the tracer discarded {count} event{s}, and nothing says when: some figures may be too large",
-        Severity.WARNING,
         "print the trace again with babeltrace2",
     ),
     "unreadable": OddityText(
-        "syntax-error",
         "{count} line{s} of ros2 events cannot be read, this one first",
-        Severity.WARNING,
         "print the trace again with `babeltrace2 FOLDER`",
+        rule="syntax-error",
     ),
     "begun again": OddityText(
-        "wrong-value",
-        "{count} callback{s} began again before an end, in one thread, here first: events are missing; not counted",
-        Severity.WARNING,
+        "{count} callback{s} began again before an end, in one thread, here first: events are missing; not counted"
     ),
     "without start": OddityText(
-        "wrong-value",
-        "of {count} callback{s} only the end was recorded, here first; not counted",
-        Severity.NOTE,
+        "of {count} callback{s} only the end was recorded, here first; not counted", severity=Severity.NOTE
     ),
     "without end": OddityText(
-        "wrong-value",
         "the recording is cut off: {count} callback{s} began and did not end, this one first; not counted",
-        Severity.NOTE,
+        severity=Severity.NOTE,
     ),
     "no nodes": OddityText(
-        "missing-key",
         "the trace has callbacks and no `ros2:rcl_node_init`: nothing says whose they are",
-        Severity.WARNING,
         "start the tracing session before the nodes",
+        rule="missing-key",
     ),
 }
 

@@ -12,15 +12,13 @@ import zipfile
 from collections.abc import Iterable, Iterator, Mapping
 from pathlib import Path
 from typing import IO
-from xml.parsers import expat
 
 from archgen.plugin.importing import (
     ARCHIVE_DAMAGE,
     ZIP_BEGINNING,
     ForeignFileError,
     Span,
-    explain_encoding,
-    explain_syntax,
+    XmlEvents,
     open_named_file,
 )
 from archgen.plugins.reqif.reqif_document import HierarchyEntry, ReqifDocument, ReqifObject, ReqifRelation
@@ -82,7 +80,6 @@ _NAMED_ELEMENTS = frozenset(
         for sort in ("XHTML", "STRING", "ENUMERATION", "INTEGER", "REAL", "BOOLEAN", "DATE")
     }
 )
-_MALFORMED_HELP = "a ReqIF file is XML in UTF-8; export it again"
 
 
 def parse_reqif(file: str, chunks: Iterable[bytes], document: ReqifDocument) -> None:
@@ -90,22 +87,16 @@ def parse_reqif(file: str, chunks: Iterable[bytes], document: ReqifDocument) -> 
     _ReqifParser(file, document).parse(chunks)
 
 
-class _ReqifParser:
+class _ReqifParser(XmlEvents):
     """The state between two elements: which object, value or relation is open."""
 
+    malformed_help = "a ReqIF file is XML in UTF-8; export it again"
+    doctype_help = "ReqIF needs neither: take out the `<!DOCTYPE ...>`"
+
     def __init__(self, file: str, document: ReqifDocument) -> None:
-        self._file, self._document = file, document
-        self._parser = expat.ParserCreate()
-        # Else expat calls back for each line of a text by itself.
-        self._parser.buffer_text = True
-        self._parser.buffer_size = 65_536
-        self._parser.StartElementHandler = self._start
-        self._parser.EndElementHandler = self._end
-        self._parser.CharacterDataHandler = self._add_text
-        self._parser.StartDoctypeDeclHandler = self._refuse_doctype
-        self._parser.EntityDeclHandler = self._refuse_doctype
+        super().__init__(file)
+        self._document = document
         self._local_names: dict[str, str] = {}
-        self._is_root_seen = False
         self._object: ReqifObject | None = None
         self._relation: ReqifRelation | None = None
         self._side = ""
@@ -118,26 +109,10 @@ class _ReqifParser:
         self._open_entries: list[int] = []
 
     def parse(self, chunks: Iterable[bytes]) -> None:
-        try:
+        with self.explained():
             for chunk in chunks:
-                self._parser.Parse(chunk, False)  # noqa: FBT003 - expat's signature
-            self._parser.Parse(b"", True)  # noqa: FBT003
-        except expat.ExpatError as error:
-            problem = explain_syntax(error, is_root_seen=self._is_root_seen, malformed_help=_MALFORMED_HELP)
-            span = self._span(None if problem.is_at_end else error)
-            raise ForeignFileError(problem.message, span, problem.help_line) from None
-        except (LookupError, ValueError) as error:
-            problem = explain_encoding(error)
-            raise ForeignFileError(problem.message, self._span(), problem.help_line) from None
-
-    def _span(self, error: expat.ExpatError | None = None) -> Span:
-        line = error.lineno if error else self._parser.CurrentLineNumber
-        column = (error.offset if error else self._parser.CurrentColumnNumber) + 1
-        return Span(self._file, line, column, line, column + 1)
-
-    def _refuse_doctype(self, *_: object) -> None:
-        words = "it declares a document type or entities, which archgen does not follow"
-        raise ForeignFileError(words, self._span(), "ReqIF needs neither: take out the `<!DOCTYPE ...>`")
+                self.parser.Parse(chunk, False)  # noqa: FBT003 - expat's signature
+            self.parser.Parse(b"", True)  # noqa: FBT003
 
     def _local(self, name: str) -> str:
         local = self._local_names.get(name)
@@ -145,7 +120,7 @@ class _ReqifParser:
             local = self._local_names[name] = name.rpartition(":")[2]
         return local
 
-    def _start(self, name: str, attributes: Mapping[str, str]) -> None:
+    def start(self, name: str, attributes: Mapping[str, str]) -> None:
         # The same few names come again and again: the look-up is written out here, where every element passes.
         local = self._local_names.get(name) or self._local(name)
         if self._xhtml is not None:
@@ -161,15 +136,15 @@ class _ReqifParser:
 
     def _start_element(self, local: str, attributes: Mapping[str, str]) -> None:
         """Take the beginning of what has an identity of its own."""
-        if not self._is_root_seen:
-            self._is_root_seen = True
+        if not self.is_root_seen:
+            self.is_root_seen = True
             if local != "REQ-IF":
                 words = f"its outermost element is `{local[:60]}`, not `REQ-IF`: this is no ReqIF"
-                raise ForeignFileError(words, self._span(), "export the requirements as ReqIF (.reqif or .reqifz)")
+                raise self.refuse(words, "export the requirements as ReqIF (.reqif or .reqifz)")
         elif local == "SPEC-OBJECT":
-            line = self._parser.CurrentLineNumber
+            line = self.parser.CurrentLineNumber
             name = attributes.get("LONG-NAME", "")
-            self._object = ReqifObject(attributes.get("IDENTIFIER", ""), name, self._file, line)
+            self._object = ReqifObject(attributes.get("IDENTIFIER", ""), name, self.file, line)
         elif local in _NAMED_ELEMENTS:
             self._document.names[attributes.get("IDENTIFIER", "")] = attributes.get("LONG-NAME", "")
         elif local == "SPEC-RELATION":
@@ -189,13 +164,13 @@ class _ReqifParser:
         elif local == "THE-VALUE":
             self._xhtml = XhtmlText()
 
-    def _add_text(self, text: str) -> None:
+    def add_text(self, text: str) -> None:
         if self._xhtml is not None:
             self._xhtml.add(text)
         elif self._text is not None:
             self._text.append(text)
 
-    def _end(self, name: str) -> None:
+    def end(self, name: str) -> None:
         local = self._local_names[name]
         if self._xhtml is not None:
             if local == "THE-VALUE":

@@ -51,20 +51,40 @@ def complete_cpp_program(architecture: Architecture, record: dict[str, Any], nod
                 "cpp_class": port["message"].replace("/", "::"),
                 "cpp_header": name_message_header(port["message"]),
             }
-            headers.add(port["cpp_header"])
+            port.update(_describe_own_message(port))
+            headers |= {port["cpp_header"], port["own_header"]}
     record |= {
         "cpp_namespace": namespace,
         "cpp_class": class_name,
         "cpp_guard": _name_guard(record["package"], record["module"]),
         "cpp_headers": sorted(headers),
+        "message_packages": sorted({each.partition("/")[0] for each in headers}),
         "distro": architecture.distro or "",
         **choose_library_parameters(record["parameters"]),
     }
 
 
-def list_cpp_libraries(programs: Iterable[Mapping[str, Any]]) -> list[str]:
+def _describe_own_message(port: Mapping[str, Any]) -> dict[str, str]:
+    """Return what own code gives and takes at a port: its message, or what is in its envelope."""
+    payload = port["envelope"]["payload"] if port["envelope"] else port["message"]
+    if "/" in payload:
+        own_class, own_header = payload.replace("/", "::"), name_message_header(payload)
+        shared_class, unique_class = f"{own_class}::ConstSharedPtr", f"{own_class}::UniquePtr"
+    else:
+        # A number, a text, or a list.
+        own_class, own_header = f"{port['cpp_class']}::_payload_type", port["cpp_header"]
+        shared_class, unique_class = f"std::shared_ptr<const {own_class}>", f"std::unique_ptr<{own_class}>"
+    return {
+        "own_class": own_class,
+        "own_header": own_header,
+        "shared_class": shared_class,
+        "unique_class": unique_class,
+    }
+
+
+def list_cpp_libraries(programs: Iterable[Mapping[str, Any]], more: Iterable[str]) -> list[str]:
     """Return the packages of ROS that the programs of a package need, beside those of their messages."""
-    found = {"rclcpp"}
+    found = {"rclcpp", *more}
     for program in programs:
         found |= {
             name

@@ -18,7 +18,7 @@ from archgen.plugin.generating import (
 from archgen.plugin.model import Architecture, ConceptualType, find_rings
 from archgen.plugin.ros import Interface
 from archgen.plugins.ros_code.interface_files import list_missing_words, list_used_packages, record_definition
-from archgen.plugins.ros_code.package_facts import record_package_facts
+from archgen.plugins.ros_code.package_facts import RosdepKeys, record_package_facts
 
 _KINDS = ("msg", "srv", "action")
 
@@ -28,17 +28,10 @@ def make_view(context: GenerationContext) -> GeneratedView:
     architecture, ros = context.architecture, context.ros_generation
     definers = _find_definers(architecture)
     findings = [*_find_untold_types(context), *_find_extended_packages(architecture, definers)]
-    existing_packages = _list_existing_packages(architecture)
-    names = [
-        name for name in _list_definitions(architecture, definers) if name.partition("/")[0] not in existing_packages
-    ]
-    used_packages = _find_used_packages(architecture, names)
-    rings = find_rings(used_packages)
-    findings += (_tell_ring(ring, names, definers) for ring in rings)
-    ring_names = [name for name in names if any(name.partition("/")[0] in ring for ring in rings)]
-    sound_names, problems = _leave_out_unsound(architecture, names, ring_names, definers, ros)
+    names = _list_generated(architecture, definers)
+    sound_names, problems = _sort_out(architecture, names, definers, ros)
     findings += problems
-    packages = _order_packages(sound_names, used_packages)
+    packages = _order_packages(sound_names, _find_used_packages(architecture, names))
     if not context.is_whole:
         wanted_packages = _find_wanted_packages(context, packages)
         packages = {name: files for name, files in packages.items() if name in wanted_packages}
@@ -57,6 +50,30 @@ def make_view(context: GenerationContext) -> GeneratedView:
         "files": list(files.values()),
     }
     return GeneratedView(data, tuple(findings))
+
+
+def find_refused_messages(architecture: Architecture, ros: int) -> Collection[str]:
+    """Return the messages of the project's own that no package can have: nodes cannot use them either."""
+    definers = _find_definers(architecture)
+    names = _list_generated(architecture, definers)
+    return set(names) - set(_sort_out(architecture, names, definers, ros)[0])
+
+
+def _list_generated(architecture: Architecture, definers: Mapping[str, ConceptualType]) -> list[str]:
+    existing_packages = _list_existing_packages(architecture)
+    return [
+        name for name in _list_definitions(architecture, definers) if name.partition("/")[0] not in existing_packages
+    ]
+
+
+def _sort_out(
+    architecture: Architecture, names: list[str], definers: Mapping[str, ConceptualType], ros: int
+) -> tuple[list[str], list[Diagnostic]]:
+    """Return the messages that can be written, and what is wrong with the others."""
+    rings = find_rings(_find_used_packages(architecture, names))
+    ring_names = [name for name in names if any(name.partition("/")[0] in ring for ring in rings)]
+    sound_names, problems = _leave_out_unsound(architecture, names, ring_names, definers, ros)
+    return sound_names, [*(_tell_ring(ring, names, definers) for ring in rings), *problems]
 
 
 def _find_definers(architecture: Architecture) -> Mapping[str, ConceptualType]:
@@ -258,6 +275,7 @@ def _record_package(
         "name": package,
         **record_package_facts(context),
         "dependencies": dependencies,
+        "rosdep_keys": RosdepKeys(architecture).list_keys(dependencies),
         "own_dependencies": [each for each in dependencies if each in packages],
         "files": [file["path"] for file in files],
         "messages": [name.split("/")[2] for name in names if "/msg/" in name],

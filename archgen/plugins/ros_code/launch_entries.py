@@ -13,13 +13,16 @@ from typing import Any
 from archgen.plugin.findings import Diagnostic, Span, join_words
 from archgen.plugin.generating import ProgramNames, make_ros_name, tell_left_out, write_place
 from archgen.plugin.model import Architecture, Node, canonical_name, find_declarations
+from archgen.plugin.ros import shared_topic_names
 from archgen.plugin.starting import (
+    SUBSTITUTION,
     RosLaunch,
     StartStep,
     describe_lifecycle,
     describe_ready,
     describe_unknown,
     format_seconds,
+    has_substitution,
 )
 
 _MANAGER_PACKAGE = "nav2_lifecycle_manager"
@@ -62,6 +65,7 @@ def record_node_entry(
     program = _find_program(program_names, node, step, ros)
     if program["form"] in {"program", "nobody"}:
         return {**entry, **program, "remarks": _list_remarks(step, str(program["form"]))}, []
+    shared_topics = shared_topic_names(architecture.shared_topics)
     launch = replace(step.ros, earlier_values={**_fill_manager(node, step.ros, managed), **step.ros.earlier_values})
     parameters, findings = record_node_parameters(architecture, node, launch, step.file_name, ros)
     return {
@@ -69,7 +73,11 @@ def record_node_entry(
         **parameters,
         **program,
         "arguments": [*program["arguments"], *node.arguments],
-        "remaps": [{"own_name": own_name, "name": name} for own_name, name in program_names.find_remaps(node).items()],
+        "remaps": [
+            {"own_name": own_name, "name": name, "is_prefixed": name.startswith("/") and name not in shared_topics}
+            for own_name, name in program_names.find_remaps(node).items()
+        ],
+        "shares_memory": step.ros.shares_memory,
         "simulated_time": read_simulated_time(step.ros),
         "remarks": _list_remarks(step, str(program["form"])),
     }, findings
@@ -96,14 +104,25 @@ def _record_entry(step: StartStep, element: str, place: str) -> dict[str, Any]:
         "arguments": [],
         "remaps": [],
         **_NO_PARAMETERS,
+        "shares_memory": False,
         "simulated_time": None,
         "environment": [{"name": name, "value": value} for name, value in step.environment.items()],
         "directory": step.directory,
         "user": step.user,
+        "scheduling": _record_scheduling(step),
         "respawn": step.respawn,
         "respawn_delay": delay if delay is None or "." in delay else f"{delay}.0",
         "remarks": _list_remarks(step, "container"),
     }
+
+
+def _record_scheduling(step: StartStep) -> dict[str, str]:
+    """Return the words that give a process its priority and cores, and the name under which a launch file holds them.
+
+    `run_scheduled` stands in front of them, and leaves out what a computer does not allow.
+    """
+    words = step.scheduling.words
+    return {"words": " ".join(words), "name": re.sub(r"[^a-z0-9]+", "_", "_".join(words))}
 
 
 def _find_program(program_names: ProgramNames, node: Node, step: StartStep, ros: int) -> dict[str, Any]:
@@ -160,10 +179,6 @@ _PACKAGE_PATH = re.compile(
     re.DOTALL,
 )
 """A file of a package, as launch files and URLs of ROS write it."""
-_SUBSTITUTION = re.compile(
-    r"\$\((?:(?:find|find-pkg-share) (?P<package>[A-Za-z0-9_]+)|env (?P<variable>[A-Za-z_][A-Za-z0-9_]*))\)"
-)
-"""What a launch file fills in. Others would run something, or need what no launch file here declares: they stay text."""
 _PACKAGE_NAME = re.compile(r"[A-Za-z0-9_-]+")
 _HOME = "~/"
 _GLOBAL_IN_ROS_1 = "use_sim_time"
@@ -185,12 +200,14 @@ def record_node_parameters(
         # What nobody could read counts more than defaults, and less than what the node says.
         parts = [("_defaults", launch.earlier_values), ("", read_values)]
     all_values = {**launch.earlier_values, **read_values}
-    filled_names = {name for name, value in all_values.items() if _is_filled_in(value)} | set(launch.value_commands)
+    filled_names = {name for name, value in all_values.items() if has_substitution(value)} | set(launch.value_commands)
     parts = [
         (suffix, {name: value for name, value in values.items() if name not in filled_names})
         for suffix, values in parts
     ]
-    written, unfit_names = _write_parts(parts, launch, file_name, ros)
+    # A file of others says the whole name, which counts more than one in any namespace; who loads a node reads no other pattern.
+    reader = launch.full_name if elsewhere else "/**" if launch.container else None
+    written, unfit_names = _write_parts(parts, launch, file_name, ros, reader)
     own_files = [_place_file("own", str(each["path"])) for each in written]
     count = 1 if elsewhere and written and written[0]["name"] != file_name else 0
     return {
@@ -220,9 +237,17 @@ def read_simulated_time(launch: RosLaunch) -> object:
 
 
 def _write_parts(
-    parts: list[tuple[str, Mapping[str, object]]], launch: RosLaunch, file_name: str, ros: int
+    parts: list[tuple[str, Mapping[str, object]]],
+    launch: RosLaunch,
+    file_name: str,
+    ros: int,
+    reader: str | None = None,
 ) -> tuple[list[dict[str, Any]], list[str]]:
-    """Return the files to write, each with its lines, and the names of what they cannot hold."""
+    """Return the files to write, each with its lines and whom they are for, and the names of what they cannot hold.
+
+    Each is loaded for its node alone, which may be in the namespace of a second robot.
+    """
+    node = launch.full_name if ros == 1 else reader or f"/**/{launch.name}"
     written: list[dict[str, Any]] = []
     unfit_names: list[str] = []
     for suffix, values in parts:
@@ -233,7 +258,7 @@ def _write_parts(
         lines = _list_tree(_make_tree(fitting) if ros == 1 else fitting, 0)
         if lines:
             name = f"{file_name}{suffix}"
-            written.append({"name": name, "path": f"config/{name}.yaml", "node": launch.full_name, "lines": lines})
+            written.append({"name": name, "path": f"config/{name}.yaml", "node": node, "lines": lines})
     return written, unfit_names
 
 
@@ -300,10 +325,6 @@ def _find_file(path: str, node: Node) -> dict[str, str]:
     return _place_file("own", path)
 
 
-def _is_filled_in(value: object) -> bool:
-    return isinstance(value, str) and _SUBSTITUTION.search(value) is not None
-
-
 def _record_filled(
     architecture: Architecture, node: Node, launch: RosLaunch, values: Mapping[str, object], ros: int
 ) -> list[dict[str, Any]]:
@@ -318,13 +339,11 @@ def _record_filled(
     filled += [
         {"name": name, "words": [], "parts": _split_substitutions(str(value))}
         for name, value in values.items()
-        if name not in launch.value_commands and _is_filled_in(value)
+        if name not in launch.value_commands and has_substitution(value)
     ]
     for each in filled:
         declared_type = declarations[each["name"]].type if each["name"] in declarations else None
-        each["is_text"] = declared_type in {None, "string"} and not (
-            declared_type is None and len(each["parts"]) == 1 and each["parts"][0]["variable"]
-        )
+        each["is_text"] = declared_type in {None, "string"} and each["name"] not in launch.untyped_names
         each["name"] = each["name"].replace(".", "/") if ros_1 else each["name"]
     return filled
 
@@ -333,7 +352,7 @@ def _split_substitutions(text: str) -> list[dict[str, str]]:
     """Return the pieces of a text: `text`, the folder of a `package`, the value of a `variable` of the environment."""
     pieces: list[dict[str, str]] = []
     end = 0
-    for found in _SUBSTITUTION.finditer(text):
+    for found in SUBSTITUTION.finditer(text):
         if found.start() > end:
             pieces.append(_make_piece(text=text[end : found.start()]))
         pieces.append(_make_piece(package=found["package"] or "", variable=found["variable"] or ""))

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+from pathlib import Path
 from typing import Any
 
 from archgen.plugin.findings import NO_SPAN, Diagnostic
@@ -14,9 +16,9 @@ from archgen.plugin.generating import (
     write_place,
 )
 from archgen.plugin.ros import is_ros_1
-from archgen.plugin.starting import StartStep, find_wanted_steps, make_start_plan
+from archgen.plugin.starting import StartStep, find_network_variables, find_wanted_steps, make_start_plan
 from archgen.plugins.ros_code.launch_entries import record_container_entry, record_node_entry
-from archgen.plugins.ros_code.package_facts import record_package_facts
+from archgen.plugins.ros_code.package_facts import RosdepKeys, record_package_facts
 
 _UNPLACED = "no-host"
 """What the computer of steps without a host is called: no id has a hyphen."""
@@ -74,9 +76,16 @@ def make_view(context: GenerationContext, ros: int) -> GeneratedView:
     ]
     # The package is that of all parts: each of them may be generated into it alone.
     has_states = any(step.transitions and step.ros for step in plan.steps)
-    package_record = {**facts, **_list_dependencies(list(entries.values()), package, ros, has_states=has_states)}
+    keys = RosdepKeys(architecture)
+    findings += keys.findings
+    all_entries = list(entries.values())
+    package_record = {**facts, **_list_dependencies(all_entries, package, keys, ros, has_states=has_states)}
     packages = [package_record] if hosts else []
     return GeneratedView({**data, "hosts": hosts, "packages": packages, "parameter_files": written}, tuple(findings))
+
+
+_OWN_ARGUMENTS = frozenset({"prefix", "scheduling"})
+"""Arguments of launch files that no host may take."""
 
 
 def _record_host(
@@ -84,23 +93,40 @@ def _record_host(
 ) -> dict[str, Any]:
     element = context.architecture.hosts.get(host or "")
     name = host or _UNPLACED
+    network = find_network_variables(steps) if ros != 1 else {}
+    if network:
+        # The file sets them for all that it starts.
+        entries = [{**each, "environment": _drop_variables(each["environment"], network)} for each in entries]
     times = [each["simulated_time"] for each in entries if each["simulated_time"] is not None]
     return {
         "name": name,
         "file_name": f"{name}.{context.part}" if context.part else name,
-        "argument": make_ros_name(name),
+        "argument": f"host_{name}" if name in _OWN_ARGUMENTS else make_ros_name(name),
         "title": element.title if element else "what has no host",
         "place": write_place(element.at) if element else "",
         "package": make_ros_name(f"{context.architecture.project.id}_bringup"),
+        "network": [{"name": name, "value": value} for name, value in network.items()],
         "entries": entries,
         "phases": _group_by_phase(entries, ros),
         "simulated_time": times[0] if times else None,
+        "schedulings": _list_schedulings(entries),
         "states": [
             {"node": step.ros.full_name, "transitions": [words[-1] for words in step.transitions]}
             for step in steps
             if step.transitions and step.ros
         ],
     }
+
+
+def _drop_variables(environment: list[dict[str, str]], told: Mapping[str, str]) -> list[dict[str, str]]:
+    return [each for each in environment if told.get(each["name"]) != each["value"]]
+
+
+def _list_schedulings(entries: list[dict[str, Any]]) -> list[dict[str, str]]:
+    """Return the priorities and choices of cores that processes are started with, each once."""
+    started = [each["scheduling"] for each in entries if each["form"] not in {"nobody", "loaded"}]
+    named = {each["name"]: each for each in started if each["words"]}
+    return [named[name] for name in sorted(named)]
 
 
 def _group_by_phase(entries: list[dict[str, Any]], ros: int) -> list[dict[str, Any]]:
@@ -123,7 +149,7 @@ def _group_by_phase(entries: list[dict[str, Any]], ros: int) -> list[dict[str, A
 
 
 def _list_dependencies(
-    all_entries: list[dict[str, Any]], own_package: str, ros: int, *, has_states: bool
+    all_entries: list[dict[str, Any]], own_package: str, keys: RosdepKeys, ros: int, *, has_states: bool
 ) -> dict[str, Any]:
     """Return what the package of the launch files needs, and what else stands in it."""
     entries = [entry for entry in all_entries if entry["form"] != "nobody"]
@@ -134,10 +160,19 @@ def _list_dependencies(
     }
     has_programs = any(entry["form"] == "program" for entry in entries)
     return {
-        "dependencies": sorted(used - {own_package}),
+        "rosdep_keys": keys.list_keys(used - {own_package}, (entry["element"] for entry in entries)),
         "has_parameters": any(entry["written"] for entry in entries),
         "has_programs": has_programs,
         "has_states": has_states,
-        "script": "run_program" if ros == 1 and has_programs else "set_states" if ros != 1 and has_states else "",
+        "scripts": [
+            name
+            for name, is_needed in (
+                ("run_program", ros == 1 and has_programs),
+                ("run_scheduled", _list_schedulings(all_entries)),
+                ("set_states", ros != 1 and has_states),
+            )
+            if is_needed
+        ],
+        "run_scheduled": Path(__file__).with_name("run_scheduled.sh").read_text(encoding="utf-8"),
         "not_started": [entry["step"] for entry in all_entries if entry["form"] == "nobody"],
     }

@@ -7,7 +7,7 @@ their packages and executables are names of folders, files and modules.
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 
 from archgen.plugin.findings import NO_SPAN, Diagnostic, Label, Span, first_written_span
 from archgen.plugin.generating import (
@@ -16,8 +16,11 @@ from archgen.plugin.generating import (
     GenerationContext,
     ProgramNames,
     find_name_clashes,
+    find_node_language,
+    find_program_type,
     group_by_program,
     index_endpoints,
+    is_loadable,
     list_generated_nodes,
     list_node_values,
     make_camel_name,
@@ -32,10 +35,16 @@ from archgen.plugin.generating import (
 )
 from archgen.plugin.model import Architecture, Endpoint, Node
 from archgen.plugin.ros import is_ros_1
-from archgen.plugins.ros_code.cpp_programs import complete_cpp_program, find_bad_classes, list_cpp_libraries
-from archgen.plugins.ros_code.package_facts import record_package_facts
+from archgen.plugins.ros_code.cpp_programs import (
+    complete_cpp_program,
+    find_bad_classes,
+    list_cpp_libraries,
+)
+from archgen.plugins.ros_code.interface_packages import find_refused_messages
+from archgen.plugins.ros_code.message_fields import list_message_fields
+from archgen.plugins.ros_code.package_facts import RosdepKeys, record_package_facts
 from archgen.plugins.ros_code.program_differences import find_program_differences, list_timers
-from archgen.plugins.ros_code.program_imports import import_in_ros_1, import_in_ros_2
+from archgen.plugins.ros_code.program_imports import IMPORTED_CLASSES, import_in_ros_1, import_in_ros_2
 
 
 def make_ros1_view(context: GenerationContext) -> GeneratedView:
@@ -55,11 +64,17 @@ def make_view(context: GenerationContext, ros: int = 2) -> GeneratedView:
     language = str(context.options.get("language") or "python")
     is_cpp = bool(context.options.get("with_cpp"))
     all_programs = _find_programs(context, language)
-    endpoints = index_endpoints(context.architecture)
     program_names = ProgramNames(context.architecture, ros)
     findings: list[Diagnostic] = list(_find_mixed_packages(context, all_programs, language))
     programs, unusable = drop_unusable(all_programs, language)
     findings += unusable
+    refused_messages = find_refused_messages(context.architecture, ros)
+    all_endpoints = index_endpoints(context.architecture)
+    for node in (node for nodes in programs.values() for node in nodes):
+        findings += _tell_refused(all_endpoints.get(node.id, ()), refused_messages)
+    endpoints = {
+        node: [each for each in used if each.message not in refused_messages] for node, used in all_endpoints.items()
+    }
     packages: dict[str, dict[str, object]] = {}
     records: list[dict[str, object]] = []
     made_nodes: list[Sequence[Node]] = []
@@ -88,17 +103,20 @@ def make_view(context: GenerationContext, ros: int = 2) -> GeneratedView:
                 "language": language,
                 "programs": [],
                 "dependencies": [],
-                "has_values": False,
+                "rosdep_keys": [],
                 "place": write_place(_find_place(context.architecture, program_nodes[0])),
             },
         )
         package["programs"].append(record)  # type: ignore[attr-defined]
-        package["has_values"] |= any(each["parameters"] for each in record["nodes"])  # type: ignore[attr-defined,operator]
+    keys = RosdepKeys(context.architecture)
+    findings += keys.findings
     for package in packages.values():
         used = {name for each in package["programs"] for name in each["message_packages"]}  # type: ignore[attr-defined]
         package["dependencies"] = sorted(used)
+        package["rosdep_keys"] = keys.list_keys(used)
         if is_cpp:
-            package["libraries"] = list_cpp_libraries(package["programs"])  # type: ignore[arg-type]
+            of_messages = set(_MESSAGE_LIBRARIES) - used if context.options.get("stand_ins") else ()
+            package["libraries"] = list_cpp_libraries(package["programs"], of_messages)  # type: ignore[arg-type]
         package["has_actions"] = any(
             each["action_servers"] or each["action_clients"]
             for each in package["programs"]  # type: ignore[attr-defined]
@@ -128,7 +146,7 @@ def _name_module(program_name: str) -> str:
 
 def _find_programs(context: GenerationContext, language: str) -> dict[tuple[str, str], list[Node]]:
     """Return the nodes of each program that is asked for. One node is enough for all of its package, which is made whole."""
-    nodes = [each for each in list_generated_nodes(context.architecture) if _is_in_language(each, language)]
+    nodes = [each for each in list_generated_nodes(context.architecture) if find_node_language(each) == language]
     programs = group_by_program(context.architecture, nodes)
     packages = {
         package
@@ -136,12 +154,6 @@ def _find_programs(context: GenerationContext, language: str) -> dict[tuple[str,
         if any(each.id in context.wanted_nodes for each in program_nodes)
     }
     return {names: program_nodes for names, program_nodes in programs.items() if names[0] in packages}
-
-
-def _is_in_language(node: Node, language: str) -> bool:
-    # What a container loads is a library of C++.
-    usual_language = "cpp" if {"composable", "nodelet"} & set(node.kinds) else "python"
-    return (node.language or usual_language) == language
 
 
 def _find_mixed_packages(
@@ -152,7 +164,7 @@ def _find_mixed_packages(
     others = {
         name_package(context.architecture, node): node
         for node in list_generated_nodes(context.architecture)
-        if _is_in_language(node, other_language)
+        if find_node_language(node) == other_language
     }
     told = set[str]()
     for (package_name, _), nodes in programs.items():
@@ -176,26 +188,33 @@ def _record_program(
 ) -> tuple[dict[str, object], list[Diagnostic]]:
     architecture, first = context.architecture, nodes[0]
     package_name, program_name = package_and_program
-    components = [architecture.components[each] for each in first.implements]
+    components = [architecture.components[each] for each in sorted(first.implements)]
     sections, findings = record_ports(architecture, nodes, endpoints)
     timers = list(list_timers(first))
     parameters, parameter_findings = record_parameters(architecture, nodes)
     message_packages = {str(port["package"]) for ports in sections.values() for port in ports}
+    component_type = find_program_type(architecture, nodes)
     functionalities = [each.functionality for each in components if each.functionality]
     class_name = make_camel_name(_name_module(program_name))
+    if {class_name, f"{class_name}Node"} & IMPORTED_CLASSES:
+        class_name += "Program"
     import_messages = import_in_ros_1 if is_ros_1(architecture.distro) else import_in_ros_2
     record: dict[str, object] = {
         "package": package_name,
         "executable": program_name,
         "module": _name_module(program_name),
         "class_name": class_name,
-        "title": components[0].title if len(components) == 1 and components[0].component_type is None else first.title,
+        "component_type": component_type.id if component_type else "",
+        "title": component_type.title
+        if component_type
+        else components[0].title
+        if len(components) == 1
+        else first.title,
         "description": first.description or " ".join(functionalities),
         "is_lifecycle": "lifecycle" in first.kinds,
-        "is_composable": "composable" in first.kinds,
+        "is_composable": is_loadable(first),
         "nodes": [_record_node(architecture, each, program_names) for each in nodes],
-        "node_name": first.name if len(nodes) == 1 else make_ros_name(program_name),
-        "namespace": first.namespace if len(nodes) == 1 else "/",
+        "node_name": make_ros_name(program_name),
         "threads": first.threads,
         "reentrant": first.reentrant,
         "timers": timers,
@@ -203,10 +222,40 @@ def _record_program(
         "parameters": parameters,
         **sections,
         "message_packages": sorted(message_packages),
+        "fields": list_message_fields(
+            architecture, {str(port["type"]) for ports in sections.values() for port in ports}
+        ),
         "python_imports": import_messages(sections, class_name),
-        "place": write_place(_find_place(architecture, first)),
+        "place": write_place(component_type.at if component_type else _find_place(architecture, first)),
     }
+    _say_when_sent(sections, timers)
+    if component_type:
+        # Of a type, not of the first of its instances.
+        for timer in timers:
+            timer["component"] = component_type.id
     return record, [*findings, *parameter_findings]
+
+
+def _say_when_sent(sections: Mapping[str, Sequence[dict[str, object]]], timers: Iterable[Mapping[str, object]]) -> None:
+    """Tell each publisher in which method a stand-in sends: on its component's timer, else with what that hears first."""
+    methods: dict[str, str] = {}
+    for port in sections["subscriptions"]:
+        methods.setdefault(str(port["port"]).rpartition(".")[0], f"receive_{port['key']}")
+    methods |= {str(each["component"]): f"on_timer_{each['key']}".rstrip("_") for each in timers}
+    for port in sections["publishers"]:
+        port["sent_in"] = methods.get(str(port["port"]).rpartition(".")[0], "send_seldom").rstrip("_")
+
+
+def _tell_refused(endpoints: Iterable[Endpoint], refused_messages: Collection[str]) -> Iterator[Diagnostic]:
+    """Yield what is left out of a node since no package can have its message."""
+    for each in endpoints:
+        if each.message in refused_messages:
+            yield tell_left_out(
+                f"`{each.port or each.label}` of the node `{each.node}` is left out: `ros_interfaces` generates no "
+                f"`{each.message}`, and says why",
+                each.at,
+                element=each.node,
+            )
 
 
 def _record_node(architecture: Architecture, node: Node, program_names: ProgramNames) -> dict[str, object]:
@@ -215,7 +264,7 @@ def _record_node(architecture: Architecture, node: Node, program_names: ProgramN
         "name": node.name,
         "namespace": node.namespace,
         "full_name": node.full_name,
-        "implements": list(node.implements),
+        "implements": sorted(node.implements),
         "parameters": list_node_values(architecture, node),
         "remaps": [{"own_name": own_name, "name": name} for own_name, name in program_names.find_remaps(node).items()],
         "place": write_place(_find_place(architecture, node)),
@@ -231,6 +280,13 @@ def _find_place(architecture: Architecture, node: Node) -> Span:
 _PACKAGE = re.compile(r"[A-Za-z][A-Za-z0-9_]*\Z", re.ASCII)
 _EXECUTABLE = re.compile(r"[A-Za-z0-9_][A-Za-z0-9_.-]*\Z", re.ASCII)
 _MAX_NAME = 100
+_MESSAGE_LIBRARIES = (
+    "builtin_interfaces",
+    "rosidl_runtime_c",
+    "rosidl_typesupport_cpp",
+    "rosidl_typesupport_introspection_cpp",
+)
+"""With which stand-ins in C++ learn what is in a message."""
 _LANGUAGES = {"python": "Python", "cpp": "C++"}
 
 
@@ -241,7 +297,8 @@ def drop_unusable(
     usable: dict[tuple[str, str], Sequence[Node]] = {}
     findings: dict[tuple[str, ...], Diagnostic] = {}
     first_packages: dict[str, tuple[str, Node]] = {}
-    for (package, executable), nodes in programs.items():
+    # Of two names that are one folder the usual one stays, whatever the order of lines.
+    for (package, executable), nodes in sorted(programs.items(), key=lambda each: (not each[0][0].islower(), each[0])):
         node = nodes[0]
         twin, twin_node = first_packages.setdefault(package.casefold(), (package, node))
         fault = _explain_bad_package(package, language)

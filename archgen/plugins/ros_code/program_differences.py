@@ -29,6 +29,8 @@ def find_program_differences(
 ) -> Iterator[Diagnostic]:
     """Yield what the nodes of one program say differently from the first of them, one finding a node and a fact."""
     first, *others = nodes
+    if not others:
+        return
     ports_by_node = _list_ports(nodes, endpoints)
     first_ports = ports_by_node[first.id]
     for node in others:
@@ -70,7 +72,7 @@ _NANOSECONDS = 10**9
 
 def list_timers(node: Node) -> Iterator[dict[str, object]]:
     """Yield what runs by the clock: a timer for each component of the node that is periodic."""
-    for component, timing in node.timing.items():
+    for component, timing in sorted(node.timing.items()):
         period = timing.period.value if timing.period else None
         if period is None and timing.rate and timing.rate.value:
             period = Fraction(_NANOSECONDS) / timing.rate.value

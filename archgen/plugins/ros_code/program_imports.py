@@ -10,10 +10,14 @@ _IMPORTED_OF_ROS_2 = frozenset(
     [
         "ActionClient",
         "ActionServer",
+        "Clock",
+        "ClockType",
         "Duration",
         "DurabilityPolicy",
         "ExternalShutdownException",
         "FloatingPointRange",
+        "Future",
+        "GoalResponse",
         "HistoryPolicy",
         "IntegerRange",
         "LifecycleNode",
@@ -21,6 +25,7 @@ _IMPORTED_OF_ROS_2 = frozenset(
         "MultiThreadedExecutor",
         "MutuallyExclusiveCallbackGroup",
         "Node",
+        "NotActive",
         "Parameter",
         "ParameterDescriptor",
         "QoSProfile",
@@ -33,6 +38,8 @@ _IMPORTED_OF_ROS_2 = frozenset(
 """What the modules of nodes import of rclpy: a message of this name is imported under another one."""
 _IMPORTED_OF_ROS_1 = frozenset(["RLock", "SimpleActionClient", "SimpleActionServer"])
 """The same of rospy, actionlib and Python."""
+IMPORTED_CLASSES = _IMPORTED_OF_ROS_2 | _IMPORTED_OF_ROS_1
+"""What no class of a program is called: it would hide what its module imports."""
 _ROS_1_CLASSES: Mapping[str, Sequence[str]] = {
     "services": ("", "Response"),
     "action_servers": ("Action",),
@@ -51,7 +58,9 @@ def import_in_ros_2(sections: _Sections, class_name: str) -> list[dict[str, obje
     def list_classes(_section: str, port: Mapping[str, object]) -> tuple[str, list[str]]:
         return f"{port['package']}.{port['kind']}", [str(port["name"])]
 
-    return _import_classes(sections, list_classes, {class_name, f"{class_name}Node", *_IMPORTED_OF_ROS_2})
+    return _import_classes(
+        sections, list_classes, {class_name, f"{class_name}Node", f"{class_name}StandIn", *_IMPORTED_OF_ROS_2}
+    )
 
 
 def import_in_ros_1(sections: _Sections, class_name: str) -> list[dict[str, object]]:

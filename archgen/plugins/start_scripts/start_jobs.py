@@ -36,7 +36,13 @@ def _list_jobs_of_step(
     phases: Sequence[str] = host["phases"]
     place = phases.index(step["phase"])
     phase_before = phases[place - 1] if place else None
-    common = {"host": host["name"], "place": step["place"], "step": step, "phase_before": phase_before}
+    common = {
+        "network": host["network"],
+        "host": host["name"],
+        "place": step["place"],
+        "step": step,
+        "phase_before": phase_before,
+    }
     needs = [need for each in step["awaited"] for need in _list_needs(steps.get(each["name"]), each["until"])]
     wall = host["ends"][phase_before] if phase_before else []
     if _has_process(step):

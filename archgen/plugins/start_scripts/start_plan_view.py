@@ -12,6 +12,7 @@ from typing import Any
 from archgen.plugin.findings import NO_SPAN, Diagnostic, Span, did_you_mean, first_written_span
 from archgen.plugin.generating import GeneratedView, GenerationContext, tell_left_out, write_place
 from archgen.plugin.model import PHASES, Architecture, ElementAnnotations
+from archgen.plugin.ros import shared_topic_names
 from archgen.plugin.starting import (
     DEFAULT_SECONDS,
     KIND_WORDS,
@@ -19,8 +20,10 @@ from archgen.plugin.starting import (
     StartStep,
     describe_dropped,
     describe_ready,
+    find_network_variables,
     find_wanted_steps,
     format_seconds,
+    has_substitution,
     make_start_plan,
     name_waits,
 )
@@ -47,6 +50,7 @@ def make_view(context: GenerationContext) -> GeneratedView:
         {
             "project": {"id": architecture.project.id, "title": architecture.project.title},
             "ros": context.ros_generation,
+            "distro": architecture.distro or "",
             "is_whole": context.is_whole,
             "prefix": f"{architecture.project.id}.{context.part}" if context.part else architecture.project.id,
             "folder": folder.rstrip("/"),
@@ -90,7 +94,8 @@ def _record_host(
         "name": host or UNPLACED,
         "place": write_place(element.at) if element else "",
         "title": element.title if element else "Computer of what has no host",
-        "address": (read_hint(element.annotations, "address") if element else "") or host or "localhost",
+        "address": element.network_name if element else host or "localhost",
+        "network": [{"name": name, "value": value} for name, value in find_network_variables(own_steps).items()],
         "phases": list(dict.fromkeys(step.phase for step in shown_steps)),
         "steps": [
             {
@@ -127,7 +132,7 @@ def record_step(
 ) -> dict[str, Any]:
     """Return a step as plain data. `names` are those of all steps, by id; times are in seconds, as texts."""
     host = architecture.hosts.get(step.host or "")
-    way = _find_way(step, ros)
+    way, launch = _find_way(step, ros), step.ros
     lifecycle = _record_lifecycle(step)
     signs = [
         {"kind": each.kind, "target": each.target, "is_seen_from_afar": each.kind in _SEEN_FROM_AFAR}
@@ -143,12 +148,14 @@ def record_step(
         "kind": KIND_WORDS[step.kind],
         "phase": step.phase,
         "host": step.host or UNPLACED,
-        "address": (read_hint(host.annotations, "address") if host else "") or step.host or "localhost",
+        "address": host.network_name if host else step.host or "localhost",
         "runs": way,
         "is_watched": bool(signs) or lifecycle is not None,
         "command": list(step.command),
         "preparations": [list(words) for words in step.preparations],
         "values": _record_values(step, ros),
+        "same": sorted(set(launch.remaps.values()) & shared_topic_names(architecture.shared_topics)) if launch else [],
+        "fills": launch is not None and any(map(has_substitution, launch.all_values.values())),
         "awaited": [
             {"name": names[each.awaited], "until": each.until, "reasons": list(each.reasons)}
             for each in name_waits(step)
@@ -161,6 +168,11 @@ def record_step(
         "environment": [{"name": name, "value": value} for name, value in step.environment.items()],
         "directory": step.directory,
         "user": step.user,
+        "scheduling": {
+            "words": list(step.scheduling.words),
+            "priority": step.scheduling.priority,
+            "cores": list(step.scheduling.cores),
+        },
         "needs_rights": list(step.needs_rights),
         "image": _find_image(step, architecture),
         "up_when": describe_ready(step),
@@ -227,7 +239,7 @@ def read_hint(annotations: ElementAnnotations, key: str) -> str:
 def find_unread_hints(architecture: Architecture) -> Iterator[Diagnostic]:
     """Yield the hints for the start-up that nobody reads: unknown ones, and those that are no text."""
     for host in architecture.hosts.values():
-        yield from _judge_hints(host.id, host.annotations, host.at, ("address", "image"))
+        yield from _judge_hints(host.id, host.annotations, host.at, ("image",))
     for container in architecture.containers.values():
         yield from _judge_hints(container.id, container.annotations, container.at, ("image",))
     for node in architecture.nodes.values():

@@ -12,15 +12,15 @@ error.
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from archgen.plugin.findings import Diagnostic, Severity, make_visible
 from archgen.plugin.importing import ImportedTables, SourceTexts, Span, title_from_id
 from archgen.plugin.ros import full_message_name, load_interfaces
 from archgen.plugins.tables import connection_rows, declaration_rows, port_lists, table_files, table_records
-from archgen.plugins.tables.column_headings import HeadingMap, write_map_option
+from archgen.plugins.tables.column_headings import HeadingMap, TableHeadings, write_map_option
 from archgen.plugins.tables.imported_project import (
     UNSORTED,
     ImportedComponent,
@@ -31,13 +31,6 @@ from archgen.plugins.tables.imported_project import (
 from archgen.plugins.tables.row_records import TableRecord
 from archgen.plugins.tables.table_cells import CellLedger, CellUse, TableCell
 from archgen.plugins.tables.table_records import TableReport
-
-if TYPE_CHECKING:
-    from collections.abc import Iterable, Iterator
-
-    from archgen.plugins.tables.column_headings import TableHeadings
-    from archgen.plugins.tables.table_cells import CellLedger
-    from archgen.plugins.tables.table_records import TableReport
 
 
 @dataclass(frozen=True, slots=True)

@@ -7,10 +7,9 @@ from collections import defaultdict
 from archgen.plugin.importing import XmlElement, make_id
 from archgen.plugins.xmi.class_features import ClassFeatures, read_features
 from archgen.plugins.xmi.component_facts import ClassFacts, ClassSorting
-from archgen.plugins.xmi.import_ledger import ImportLedger, choose_id
-from archgen.plugins.xmi.port_facts import InterfaceUses, PortFacts
-from archgen.plugins.xmi.uml_catalogue import UmlCatalogue
-from archgen.plugins.xmi.uml_index import UmlIndex, get_kind, get_name, is_true, list_child_elements
+from archgen.plugins.xmi.import_ledger import choose_id
+from archgen.plugins.xmi.port_facts import PortFacts
+from archgen.plugins.xmi.uml_index import get_kind, get_name, is_true, list_child_elements
 
 _HARDWARE = frozenset({"Node", "ExecutionEnvironment"})
 
@@ -18,16 +17,9 @@ _HARDWARE = frozenset({"Node", "ExecutionEnvironment"})
 class ComponentAssembly:
     """The components and component types of a model with their ids, ports and features."""
 
-    def __init__(
-        self,
-        index: UmlIndex,
-        ledger: ImportLedger,
-        catalogue: UmlCatalogue,
-        uses: InterfaceUses,
-        sorting: ClassSorting,
-    ) -> None:
-        self._index, self._ledger, self._catalogue = index, ledger, catalogue
-        self._uses, self._sorting = uses, sorting
+    def __init__(self, sorting: ClassSorting) -> None:
+        self.sorting, self.ledger, self.catalogue = sorting, sorting.ledger, sorting.catalogue
+        self._index = self.ledger.index
         self.types: dict[str, ClassFacts] = {}
         self.groups: dict[str, XmlElement] = {}
         """The packages that became groups, by id."""
@@ -50,7 +42,7 @@ class ComponentAssembly:
         self._read_features()
 
     def _place_types(self) -> None:
-        for facts in self._sorting.facts.values():
+        for facts in self.sorting.facts.values():
             if facts.sort == "component_type":
                 facts.id = choose_id(facts.element, "type", self.types, known_ids=self._index.known_ids)
                 facts.path = (facts.id,)
@@ -58,7 +50,7 @@ class ComponentAssembly:
 
     def _find_owners(self) -> None:
         """Find what each component stands in: the class or node around it."""
-        known = self._sorting.facts
+        known = self.sorting.facts
         for facts in known.values():
             if facts.sort != "component":
                 continue
@@ -74,19 +66,19 @@ class ComponentAssembly:
 
     def _add_parts(self) -> None:
         """Add a component for each property that is a place for one: an instance of the property's type."""
-        for owner in list(self._sorting.facts.values()):
+        for owner in list(self.sorting.facts.values()):
             if owner.sort == "data":
                 continue
             for part in list_child_elements(owner.element, "Property"):
-                part_type, arguments = self._sorting.find_part_type(part)
+                part_type, arguments = self.sorting.find_part_type(part)
                 if part_type is None or part_type.sort != "component_type":
                     continue
                 if is_true(part_type.element, "isAbstract"):
-                    self._ledger.refuse(part, f"`{get_name(part_type.element)}` is abstract")
+                    self.ledger.refuse(part, f"`{get_name(part_type.element)}` is abstract")
                     continue
                 facts = ClassFacts(part, "component", owner=owner, base=part_type, base_arguments=arguments)
                 owner.inside.append(facts)
-                self._sorting.parts[part] = facts
+                self.sorting.parts[part] = facts
 
     def _cut_containment_circles(self) -> None:
         """Leave out parts by which a type would contain itself."""
@@ -111,9 +103,9 @@ class ComponentAssembly:
                 if inner.base is not None and any(
                     id(each) in active for each in (inner.base, *inner.base.list_bases())
                 ):
-                    self._ledger.refuse(inner.element, "the component type would contain itself")
+                    self.ledger.refuse(inner.element, "the component type would contain itself")
                     facts.inside.remove(inner)
-                    self._sorting.parts.pop(inner.element, None)
+                    self.sorting.parts.pop(inner.element, None)
                 else:
                     stack += [(each, False) for each in (inner, inner.base) if each is not None]
             if facts.base is not None and id(facts.base) not in active:
@@ -121,13 +113,13 @@ class ComponentAssembly:
 
     def _add_devices(self) -> None:
         """Make a component on the boundary of each device."""
-        for element in self._catalogue.hardware:
+        for element in self.catalogue.hardware:
             if get_kind(element) == "Device":
-                self._sorting.facts[element] = ClassFacts(element, "component", device=True)
-                self._ledger.take(element)
+                self.sorting.facts[element] = ClassFacts(element, "component", device=True)
+                self.ledger.take(element)
 
     def _place_components(self) -> None:
-        outermost = [each for each in self._sorting.facts.values() if each.sort == "component" and each.owner is None]
+        outermost = [each for each in self.sorting.facts.values() if each.sort == "component" and each.owner is None]
         for facts in outermost:
             group_id = self._find_group(facts.element)
             facts.id = choose_id(facts.element, "component", self._taken_ids[group_id], known_ids=self._index.known_ids)
@@ -150,42 +142,42 @@ class ComponentAssembly:
             stack += reversed(facts.inside)
 
     def _find_group(self, element: XmlElement) -> str:
-        package = self._catalogue.packages[element]
+        package = self.catalogue.packages[element]
         group_id = self._group_of.get(package)
         if group_id is None:
             group_id = choose_id(package, "group", self.groups, known_ids=self._index.known_ids)
             self.groups[group_id] = package
             self._group_of[package] = group_id
-            self._ledger.take(package)
+            self.ledger.take(package)
         return group_id
 
     def _read_ports(self, facts: ClassFacts) -> None:
-        if facts.element in self._sorting.parts:
+        if facts.element in self.sorting.parts:
             return
-        ports = [self._uses.make_port(each) for each in list_child_elements(facts.element, "Port")]
+        ports = [self.sorting.uses.make_port(each) for each in list_child_elements(facts.element, "Port")]
         for port in ports:
-            self._ledger.take(port.element)
+            self.ledger.take(port.element)
         # What a class provides to others as code is no port of a component type: only components meet here.
         is_component = facts.sort == "component" or get_kind(facts.element) == "Component"
-        facts.ports = [*ports, *(self._uses.list_bare_ports(facts.element, ports) if is_component else ())]
+        facts.ports = [*ports, *(self.sorting.uses.list_bare_ports(facts.element, ports) if is_component else ())]
         self._port_of |= {(id(facts), port.element): port for port in reversed(facts.ports)}
 
     def _read_features(self) -> None:
         realized: dict[int, set[str]] = defaultdict(set)
-        for other in self._sorting.facts.values():
+        for other in self.sorting.facts.values():
             if other.base is not None:
                 realized[id(other.base)] |= {get_name(each) for each in list_child_elements(other.element, "Port")}
         for facts in (*self.types.values(), *self.components):
-            if facts.element in self._sorting.parts:
+            if facts.element in self.sorting.parts:
                 self.features[facts.element] = ClassFeatures()
-                self._ledger.take(facts.element)
+                self.ledger.take(facts.element)
                 continue
             parts = {inner.element for inner in facts.inside}
             names = {port.name for port in facts.ports} | realized[id(facts)]
-            self.features[facts.element] = read_features(self._index, self._ledger, facts.element, names, parts)
+            self.features[facts.element] = read_features(self.ledger, facts.element, names, parts)
             kind = "Class" if get_kind(facts.element) == "AssociationClass" else ""
             if not facts.device:
-                self._ledger.take(facts.element, kind)
+                self.ledger.take(facts.element, kind)
 
     def list_ports(self) -> list[PortFacts]:
         """Return the ports of all components and component types."""

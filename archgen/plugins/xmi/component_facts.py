@@ -13,7 +13,7 @@ from archgen.plugins.xmi.import_ledger import OWN_PREFIX, ImportLedger, name_ele
 from archgen.plugins.xmi.port_facts import InterfaceUses, PortFacts
 from archgen.plugins.xmi.template_classes import TemplateClasses, TypeArguments
 from archgen.plugins.xmi.uml_catalogue import UmlCatalogue
-from archgen.plugins.xmi.uml_index import UmlIndex, get_id, get_kind, get_name, is_true, list_child_elements
+from archgen.plugins.xmi.uml_index import get_id, get_kind, get_name, is_true, list_child_elements
 
 _TYPE_PREFIX = f"{OWN_PREFIX}component_type."
 _LIBRARY_ID = f"{OWN_PREFIX}package.classes"
@@ -68,10 +68,9 @@ class ClassFacts:
 class ClassSorting:
     """Sorts the classes of a model, and finds what each is made from."""
 
-    def __init__(self, index: UmlIndex, ledger: ImportLedger, catalogue: UmlCatalogue, uses: InterfaceUses) -> None:
-        self._index, self._ledger, self._uses = index, ledger, uses
-        self._catalogue = catalogue
-        self._templates = TemplateClasses(index, ledger, catalogue)
+    def __init__(self, ledger: ImportLedger, catalogue: UmlCatalogue, uses: InterfaceUses) -> None:
+        self.ledger, self.catalogue, self.uses, self._index = ledger, catalogue, uses, ledger.index
+        self._templates = TemplateClasses(ledger, catalogue)
         self._arguments: dict[XmlElement, TypeArguments] = {}
         """What the generic names of the class stand for that each class or component is made from."""
         self._generals = self._find_generals()
@@ -103,36 +102,36 @@ class ClassSorting:
                     self._templates.resolve(reference.element) if reference and reference.element else (None, ())
                 )
                 if unbound:
-                    self._ledger.leave(generalization, f"{name_element(element)} is made from a template: {unbound}")
+                    self.ledger.leave(generalization, f"{name_element(element)} is made from a template: {unbound}")
                 elif general is None or general not in known:
                     words = f"{name_element(element)} is made from a class that is not among the classes of these files"
-                    self._ledger.leave(generalization, words)
+                    self.ledger.leave(generalization, words)
                 elif element in generals:
                     words = f"{name_element(element)} is made from `{get_name(general)}`, too: a component type is made from one"
-                    self._ledger.leave(generalization, words)
+                    self.ledger.leave(generalization, words)
                 elif find_top(tops, general) is element:
                     words = (
                         f"{name_element(element)} would be made from itself: the generalizations go round in a circle"
                     )
-                    self._ledger.leave(generalization, words, "take out one of them")
+                    self.ledger.leave(generalization, words, "take out one of them")
                 else:
                     generals[element], written[element] = general, generalization
                     self._arguments[element] = arguments
                     tops[element] = general
         for element in list_beyond(generals):
             words = f"{name_element(element)} is made from a class that is made from a class, more than {MAX_GENERALS} times"
-            self._ledger.leave(written.get(element, element), words, "name a class further up")
+            self.ledger.leave(written.get(element, element), words, "name a class further up")
             del generals[element]
         for generalization in (written[each] for each in generals if each in written):
-            self._ledger.take(generalization)
+            self.ledger.take(generalization)
         return generals
 
     def _find_realizers(self) -> dict[XmlElement, XmlElement]:
         """Return the class that realizes each component; the first of several."""
         realizers: dict[XmlElement, XmlElement] = {}
-        classes = frozenset(self._catalogue.classes)  # with those that stand for bound templates
-        for realization in self._catalogue.realizations:
-            if realization in self._uses.used_elements:
+        classes = frozenset(self.catalogue.classes)  # with those that stand for bound templates
+        for realization in self.catalogue.realizations:
+            if realization in self.uses.used_elements:
                 continue
             kind, parent = get_kind(realization), self._index.get_parent(realization)
             components = self._index.list_named(realization, "abstraction", "supplier")
@@ -142,22 +141,22 @@ class ClassSorting:
             realizing = [each for each in realizing if each in classes and each not in components]
             components = [each for each in components if get_kind(each) == "Component"]
             if realizing and (unbound := self._templates.describe_unbound(realizing[0])):
-                self._ledger.refuse(realization, unbound)
+                self.ledger.refuse(realization, unbound)
                 continue
             for component in components:
                 for each in realizing[:1]:
                     if component in realizers:
                         words = f"{name_element(component)} is realized by `{get_name(each)}`, too: a component is made from one type"
-                        self._ledger.leave(realization, words)
+                        self.ledger.leave(realization, words)
                     else:
                         realizers[component], self._arguments[component] = self._templates.resolve(each)
-                        self._ledger.take(realization)
+                        self.ledger.take(realization)
             if len(realizing) > 1 and components:
                 names = ", ".join(get_name(each) for each in realizing[1:3])
                 words = f"{name_element(components[0])} is realized by {names[:100]}, too: a component is made from one type"
-                self._ledger.leave(realization, words)
+                self.ledger.leave(realization, words)
             if not components or not realizing:
-                self._ledger.refuse(realization, "it does not lead from a class to a component")
+                self.ledger.refuse(realization, "it does not lead from a class to a component")
         return realizers
 
     def _sort_classes(self) -> None:
@@ -214,7 +213,7 @@ class ClassSorting:
             bases = facts.list_bases()
             if any(base is facts for base in bases):
                 words = f"{name_element(facts.element)} would be made from itself"
-                self._ledger.leave(facts.element, words, "take out one of the generalizations and realizations")
+                self.ledger.leave(facts.element, words, "take out one of the generalizations and realizations")
                 facts.base = None
 
     def _is_in_library(self, element: XmlElement) -> bool:
@@ -234,7 +233,7 @@ class ClassSorting:
         if element not in self.with_ports:
             return None, ()
         if unbound := self._templates.describe_unbound(reference.element):
-            self._ledger.refuse(part, unbound)
+            self.ledger.refuse(part, unbound)
             return None, ()
         return self.facts.get(element), arguments
 
@@ -246,7 +245,7 @@ class ClassSorting:
         """Return the properties that connectors join: they stand inside, whatever else is written of them."""
         return {
             part
-            for connector in self._catalogue.connectors
+            for connector in self.catalogue.connectors
             for end in list_child_elements(connector, "ConnectorEnd")
             for part in self._index.list_named(end, "partWithPort", "role")
         }
@@ -286,7 +285,7 @@ class ClassSorting:
     def _count_data_uses(self) -> Counter[XmlElement]:
         """Count how often a class is the type of a port, a property or a parameter."""
         uses: Counter[XmlElement] = Counter()
-        owners = (*self._catalogue.classes, *self._catalogue.interfaces, *self._catalogue.data_types)
+        owners = (*self.catalogue.classes, *self.catalogue.interfaces, *self.catalogue.data_types)
         for owner in owners:
             for feature in list_child_elements(owner, "Property", "Port", "Operation"):
                 typed = list_child_elements(feature, "Parameter") if get_kind(feature) == "Operation" else [feature]

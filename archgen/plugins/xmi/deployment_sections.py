@@ -7,8 +7,8 @@ from collections import defaultdict
 from archgen.plugin.importing import XmlElement, make_unique_id
 from archgen.plugins.xmi.component_assembly import ComponentAssembly
 from archgen.plugins.xmi.component_facts import ClassFacts
-from archgen.plugins.xmi.import_ledger import OWN_PREFIX, ImportLedger, choose_id, make_hints, name_element, say_title
-from archgen.plugins.xmi.uml_catalogue import UmlCatalogue, read_description
+from archgen.plugins.xmi.import_ledger import OWN_PREFIX, choose_id, make_hints, name_element, say_title
+from archgen.plugins.xmi.uml_catalogue import read_description
 from archgen.plugins.xmi.uml_index import UmlIndex, get_id, get_kind, get_name, list_child_elements
 
 _MAX_HINTS = 10_000
@@ -18,10 +18,8 @@ _MAX_HINTS = 10_000
 class DeploymentSections:
     """Makes the sections `hosts`, `links` and `nodes`."""
 
-    def __init__(
-        self, index: UmlIndex, ledger: ImportLedger, catalogue: UmlCatalogue, assembly: ComponentAssembly
-    ) -> None:
-        self._index, self._ledger, self._catalogue, self._assembly = index, ledger, catalogue, assembly
+    def __init__(self, assembly: ComponentAssembly) -> None:
+        self._ledger, self._catalogue, self._index = assembly.ledger, assembly.catalogue, assembly.ledger.index
         self._facts_of = {facts.element: facts for facts in assembly.components}
         self._hosts: dict[XmlElement, str] = {}
         self._libraries: dict[str, list[str]] = defaultdict(list)
@@ -29,11 +27,11 @@ class DeploymentSections:
         self._host_of: dict[ClassFacts, str] = {}
         self._package_of: dict[ClassFacts, XmlElement] = {}
         taken: set[str] = set()
-        for element in catalogue.hardware:
+        for element in self._catalogue.hardware:
             if get_kind(element) == "Node":
-                self._hosts[element] = choose_id(element, "host", taken, known_ids=index.known_ids)
+                self._hosts[element] = choose_id(element, "host", taken, known_ids=self._index.known_ids)
                 taken.add(self._hosts[element])
-                ledger.take(element)
+                self._ledger.take(element)
         self._middlewares = self._find_middlewares()
         self._own_nodes: dict[str, dict[str, object]] = {}
         """Nodes that archgen exported, by id."""
@@ -162,9 +160,7 @@ class DeploymentSections:
                 middleware=middlewares[0] if len(middlewares) == 1 else middlewares,
                 artifacts=list(dict.fromkeys(self._libraries.get(host_id, ()))),
             )
-            section[host_id] = (
-                say_title(get_name(element), host_id) | read_description(self._index, self._ledger, element) | hints
-            )
+            section[host_id] = say_title(get_name(element), host_id) | read_description(self._ledger, element) | hints
         return section
 
     def make_nodes(self) -> dict[str, object]:

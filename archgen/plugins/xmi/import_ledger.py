@@ -5,12 +5,12 @@ Ids, titles and names of the language for elements of UML.
 
 from __future__ import annotations
 
-import re
 from collections import Counter
 from collections.abc import Collection, Iterable, Mapping
 from types import MappingProxyType
 
 from archgen.plugin.importing import ImportNote, XmlElement, is_id, make_id, make_unique_id, title_from_id
+from archgen.plugin.model import is_parameter_name
 from archgen.plugins.xmi.uml_index import UmlIndex, get_id, get_kind, get_name
 
 OWN_PREFIX = "archgen."
@@ -22,7 +22,7 @@ class ImportLedger:
     """Counts and notes, in the order in which they come up."""
 
     def __init__(self, index: UmlIndex) -> None:
-        self._index = index
+        self.index = index
         self.taken: Counter[str] = Counter()
         self._taken_elements: set[XmlElement] = set()
         self._noted_fates: dict[XmlElement, str] = {}
@@ -63,7 +63,7 @@ class ImportLedger:
         others: tuple[XmlElement, ...],
     ) -> None:
         word = kind or f"uml:{get_kind(element) or element.tag}"
-        note = ImportNote(word, message, self._index.get_span(element), help_line, fate, 1 + len(others))
+        note = ImportNote(word, message, self.index.get_span(element), help_line, fate, 1 + len(others))
         self._notes.setdefault((element, message), note)
         for each in (element, *others):
             self._noted_fates.setdefault(each, fate)
@@ -94,7 +94,6 @@ def make_hints(element: XmlElement, **others: object) -> dict[str, object]:
     return {"hints": {"uml": kept}} if kept else {}
 
 
-_PARAMETER_NAME = re.compile(r"[^\s.]+(?:\.[^\s.]+)*\Z")
 MAX_TYPE_LENGTH = 200
 _NO_IDS: Mapping[str, str] = MappingProxyType({})
 
@@ -120,7 +119,7 @@ def say_title(name: str, element_id: str) -> dict[str, object]:
 
 def name_parameter(name: str) -> str:
     """Return a name that a parameter may have."""
-    return name if _PARAMETER_NAME.match(name) and len(name) <= MAX_TYPE_LENGTH else make_id(name, "parameter")
+    return name if is_parameter_name(name) else make_id(name, "parameter")
 
 
 def name_conceptual_type(name: str) -> str:

@@ -8,11 +8,10 @@ from dataclasses import dataclass
 
 from archgen.plugin.importing import XmlElement
 from archgen.plugins.xmi.component_assembly import ComponentAssembly
-from archgen.plugins.xmi.component_facts import ClassFacts, ClassSorting
-from archgen.plugins.xmi.import_ledger import ImportLedger, name_element
+from archgen.plugins.xmi.component_facts import ClassFacts
+from archgen.plugins.xmi.import_ledger import name_element
 from archgen.plugins.xmi.port_facts import InterfaceKey, PortFacts, get_interface_name
-from archgen.plugins.xmi.uml_catalogue import UmlCatalogue
-from archgen.plugins.xmi.uml_index import UmlIndex, get_name, list_child_elements
+from archgen.plugins.xmi.uml_index import get_name, list_child_elements
 
 _MAX_CONNECTIONS = 100_000
 """So many connections one interface makes: each who uses it reads each who realizes it."""
@@ -29,22 +28,16 @@ class PortEnd:
 class PortWiring:
     """The connections of all components. Ports become inputs where a connector joins them to an output."""
 
-    def __init__(
-        self,
-        index: UmlIndex,
-        ledger: ImportLedger,
-        catalogue: UmlCatalogue,
-        sorting: ClassSorting,
-        assembly: ComponentAssembly,
-    ) -> None:
-        self._index, self._ledger, self._sorting, self._assembly = index, ledger, sorting, assembly
+    def __init__(self, assembly: ComponentAssembly) -> None:
+        self._assembly, self._sorting, self._ledger = assembly, assembly.sorting, assembly.ledger
+        self._index = self._ledger.index
         self.inner_of: dict[ClassFacts, dict[PortFacts, list[PortEnd]]] = defaultdict(lambda: defaultdict(list))
         """The ports inside that a port of a composed component passes on, by component and port."""
         self._everyone = [*assembly.types.values(), *assembly.components]
         self._end_of_port = {
             port.element: PortEnd(facts, port) for facts in self._everyone for port in facts.ports if port.is_port
         }
-        joined = [ends for each in catalogue.connectors if (ends := self._read_connector(each))]
+        joined = [ends for each in assembly.catalogue.connectors if (ends := self._read_connector(each))]
         self._decide_directions(joined)
         self.sources: dict[ClassFacts, dict[PortFacts, dict[str, None]]] = defaultdict(lambda: defaultdict(dict))
         """What each input reads, as references of the language."""
@@ -56,7 +49,17 @@ class PortWiring:
         ends = list_child_elements(connector, "ConnectorEnd")
         found = [end for each in ends if (end := self._find_end(each))]
         if len(ends) != 2 or len(found) != 2:  # noqa: PLR2004 - a connector joins two
-            self._ledger.refuse(connector, "it does not join two ports of components")
+            elsewhere = [
+                reference.name
+                for each in ends
+                for reference in self._index.list_references(each, "role", "partWithPort")
+                if reference.is_outside
+            ]
+            if elsewhere:
+                words = f"`{elsewhere[0][:80]}`, which it joins, lies in a file that is not among those that are read"
+                self._ledger.refuse(connector, words, "give that file, too")
+            else:
+                self._ledger.refuse(connector, "it does not join two ports of components")
             return None
         for each, other in (found, found[::-1]):
             # A port that is passed on to the inside still meets others outside.

@@ -31,8 +31,8 @@ def read_generic_names(index: UmlIndex, signature: XmlElement) -> tuple[str, ...
 class TemplateClasses:
     """The classes that are templates, with their generic names, and the classes that are bound to them."""
 
-    def __init__(self, index: UmlIndex, ledger: ImportLedger, catalogue: UmlCatalogue) -> None:
-        self._index, self._ledger = index, ledger
+    def __init__(self, ledger: ImportLedger, catalogue: UmlCatalogue) -> None:
+        self._index, self._ledger = ledger.index, ledger
         self.generic_names: dict[XmlElement, tuple[str, ...]] = {}
         self._formals: dict[XmlElement, list[XmlElement]] = {}
         self._signatures: dict[XmlElement, XmlElement] = {}

@@ -10,7 +10,7 @@ from html.parser import HTMLParser
 
 from archgen.plugin.importing import XmlElement
 from archgen.plugins.xmi.import_ledger import OWN_PREFIX, ImportLedger
-from archgen.plugins.xmi.uml_index import UmlIndex, XmiDocument, get_id, get_kind, get_name
+from archgen.plugins.xmi.uml_index import XmiDocument, get_id, get_kind, get_name
 
 _PACKAGES = frozenset({"Model", "Package"})
 _CLASSES = frozenset({"Class", "Component"})
@@ -24,15 +24,7 @@ _SILENT_TAGS = frozenset(
     {"name", "client", "supplier", "type", "lowerValue", "upperValue", "defaultValue", "provided", "required"}
     | {"memberEnd", "navigableOwnedEnd", "ownedEnd", "clientDependency", "association", "value", "mapping", "body"}
     | {"contract", "implementingClassifier", "realizingClassifier", "abstraction", "deployedArtifact", "location"}
-    | {
-        "utilizedElement",
-        "member",
-        "interface",
-        "qualifiedName",
-        "feature",
-        "attribute",
-        "end",
-    }
+    | {"utilizedElement", "member", "interface", "qualifiedName", "feature", "attribute", "end"}
 )
 """Parts of elements that are read with them, or say again what stands elsewhere."""
 _OWNING_TAGS = frozenset({"packagedElement", "ownedMember", "nestedPackage", "nestedClassifier"})
@@ -81,9 +73,9 @@ class UmlCatalogue:
     all_packages: list[XmlElement] = field(default_factory=list)
 
 
-def make_catalogue(documents: Sequence[XmiDocument], index: UmlIndex, ledger: ImportLedger) -> UmlCatalogue:
+def make_catalogue(documents: Sequence[XmiDocument], ledger: ImportLedger) -> UmlCatalogue:
     """Return the catalogue of documents, and note what has no place in it."""
-    walk = _CatalogueWalk(index, ledger)
+    walk = _CatalogueWalk(ledger)
     for document in documents:
         for model in document.models:
             if get_kind(model) == "Profile":
@@ -96,9 +88,9 @@ def make_catalogue(documents: Sequence[XmiDocument], index: UmlIndex, ledger: Im
 
 
 class _CatalogueWalk:
-    def __init__(self, index: UmlIndex, ledger: ImportLedger) -> None:
+    def __init__(self, ledger: ImportLedger) -> None:
         self.catalogue = UmlCatalogue()
-        self._index, self._ledger = index, ledger
+        self._index, self._ledger = ledger.index, ledger
         self._tool_parts: dict[str, list[XmlElement]] = defaultdict(list)
         catalogue = self.catalogue
         self._lists = {
@@ -121,7 +113,7 @@ class _CatalogueWalk:
         for child in element.children:
             kind = get_kind(child)
             if child.tag in TOOL_TAGS:
-                self._count_tool_part(child)
+                self._tool_parts[child.tag].append(child)
             elif "xmi:idref" in child.attributes or "href" in child.attributes:
                 self._visit_reference(child)
             elif kind in _PACKAGES:
@@ -142,7 +134,7 @@ class _CatalogueWalk:
                 # Read with its class, as a template or what is bound to one.
                 continue
             elif child.tag not in _SILENT_TAGS and (kind or "xmi:id" in child.attributes):
-                self._leave(child, kind)
+                self._ledger.refuse(child, _WHY.get(kind, "the language has nothing like it"))
 
     def _visit_reference(self, child: XmlElement) -> None:
         """Note a part of the model that lies in a file of its own, and was not named."""
@@ -153,15 +145,12 @@ class _CatalogueWalk:
                 words = f"`{name[:80]}` is not taken: it lies in a file that was not named"
                 self._ledger.leave(child, words, "name all files of the model together")
 
-    def _count_tool_part(self, part: XmlElement) -> None:
-        self._tool_parts[part.tag].append(part)
-
     def _visit_feature(self, feature: XmlElement, package: XmlElement) -> None:
         self.catalogue.packages[feature] = package
         for child in feature.children:
             kind = get_kind(child)
             if child.tag in TOOL_TAGS:
-                self._count_tool_part(child)
+                self._tool_parts[child.tag].append(child)
             is_reference = "xmi:idref" in child.attributes or "href" in child.attributes
             if kind in self._lists and child.tag not in _SILENT_TAGS and not is_reference:
                 self._lists[kind].append(child)
@@ -174,15 +163,11 @@ class _CatalogueWalk:
             about = ", ".join(get_name(each) or get_kind(each) for each in named[:3])
             self._ledger.leave(comment, f"a comment about {about[:100]} is not taken: it stands outside of that")
 
-    def _leave(self, element: XmlElement, kind: str) -> None:
-        reason = _WHY.get(kind, "the language has nothing like it")
-        self._ledger.refuse(element, reason)
-
     def note_surroundings(self, document: XmiDocument) -> None:
         """Note what a tool keeps for itself, and the stereotypes that it wrote outside of the model."""
         for child in document.surroundings:
             if child.tag in TOOL_TAGS:
-                self._count_tool_part(child)
+                self._tool_parts[child.tag].append(child)
         for tag, parts in self._tool_parts.items():
             if tag != "Documentation":
                 words = f"{len(parts)} `{tag}` {'is' if len(parts) == 1 else 'are'} not taken: what the tool keeps for itself"
@@ -200,12 +185,12 @@ class _CatalogueWalk:
             self._ledger.leave(uses[0], words, kind=name, others=uses[1:])
 
 
-def read_description(index: UmlIndex, ledger: ImportLedger, element: XmlElement) -> dict[str, object]:
+def read_description(ledger: ImportLedger, element: XmlElement) -> dict[str, object]:
     """Return `description` with the comments that stand in an element and are about it."""
     texts: dict[str, list[str]] = {}
     for child in element.children:
         if get_kind(child) == "Comment":
-            named = index.list_named(child, "annotatedElement")
+            named = ledger.index.list_named(child, "annotatedElement")
             body = child.find("body")
             text = child.attributes.get("body") or (body.text if body is not None else "")
             if not text.strip():

@@ -9,11 +9,11 @@ from archgen.plugin.importing import XmlElement, make_unique_id, title_from_id
 from archgen.plugins.xmi.class_features import ClassFeatures
 from archgen.plugins.xmi.component_assembly import ComponentAssembly
 from archgen.plugins.xmi.component_facts import ClassFacts
-from archgen.plugins.xmi.import_ledger import OWN_PREFIX, ImportLedger, choose_id, make_hints, name_element, say_title
-from archgen.plugins.xmi.port_facts import InterfaceUses, PortFacts, get_interface_name
+from archgen.plugins.xmi.import_ledger import OWN_PREFIX, choose_id, make_hints, name_element, say_title
+from archgen.plugins.xmi.port_facts import PortFacts, get_interface_name
 from archgen.plugins.xmi.port_wiring import PortWiring, list_inner_references, name_port
 from archgen.plugins.xmi.uml_catalogue import read_description
-from archgen.plugins.xmi.uml_index import UmlIndex, get_id, get_kind, get_name, is_true
+from archgen.plugins.xmi.uml_index import get_id, get_kind, get_name, is_true
 from archgen.plugins.xmi.uml_values import find_field_type
 
 _DECLARING_KEYS = frozenset({"title", "description", "inputs", "outputs", "components"})
@@ -49,16 +49,8 @@ def _assign_own_ids(facts: ClassFacts, known_ids: Mapping[str, str]) -> None:
 class ComponentSections:
     """Makes the sections `groups` and `component_types`."""
 
-    def __init__(
-        self,
-        index: UmlIndex,
-        ledger: ImportLedger,
-        uses: InterfaceUses,
-        assembly: ComponentAssembly,
-        wiring: PortWiring,
-    ) -> None:
-        self._index, self._ledger, self._uses = index, ledger, uses
-        self._assembly, self._wiring = assembly, wiring
+    def __init__(self, assembly: ComponentAssembly, wiring: PortWiring) -> None:
+        self._assembly, self._wiring, self._ledger = assembly, wiring, assembly.ledger
         self._port_keys = {facts: _list_keys(facts.ports) for facts in assembly.types.values()}
         self._given_ports: dict[ClassFacts, list[PortFacts]] = defaultdict(list)
         self._made_types: dict[str, dict[str, object]] = {}
@@ -123,7 +115,7 @@ class ComponentSections:
         for facts in self._assembly.types.values():
             element = facts.element
             body: dict[str, object] = say_title(get_name(element), facts.id)
-            body |= read_description(self._index, self._ledger, element)
+            body |= read_description(self._ledger, element)
             if is_true(element, "isAbstract"):
                 body["abstract"] = True
             if facts.generic_names:
@@ -140,9 +132,7 @@ class ComponentSections:
         """Return the section `groups`."""
         groups: dict[str, dict[str, object]] = {}
         for group_id, package in self._assembly.groups.items():
-            body: dict[str, object] = say_title(get_name(package), group_id) | read_description(
-                self._index, self._ledger, package
-            )
+            body = say_title(get_name(package), group_id) | read_description(self._ledger, package)
             groups[group_id] = body | {"components": {}} | make_hints(package)
         for facts in self._assembly.components:
             if facts.owner is None:
@@ -153,7 +143,7 @@ class ComponentSections:
 
     def _write_component(self, facts: ClassFacts) -> dict[str, object]:
         body: dict[str, object] = say_title(get_name(facts.element), facts.id)
-        body |= read_description(self._index, self._ledger, facts.element)
+        body |= read_description(self._ledger, facts.element)
         features = self._assembly.features[facts.element]
         type_id = self._type_of.get(facts)
         if type_id is not None:
@@ -190,7 +180,7 @@ class ComponentSections:
             port_type = self._find_type(port, facts, is_fed=bool(sources))
             is_given = is_type and id(port) not in own
             hints = {} if is_given else self._make_hints(port, is_fed=bool(sources))
-            texts = {} if is_given or not port.is_port else read_description(self._index, self._ledger, port.element)
+            texts = {} if is_given or not port.is_port else read_description(self._ledger, port.element)
             if port.is_input:
                 inputs[port.input_id] = port_type | _write_sources(sources) | ({} if port.is_output else texts | hints)
             if port.is_output:
@@ -221,7 +211,7 @@ class ComponentSections:
         name = known or port.type_name
         if not name and not (is_fed and not port.is_output):
             # What an input reads says its type; the interface does where nobody provides it.
-            name = self._uses.find_data_type(port)
+            name = self._assembly.sorting.uses.find_data_type(port)
         return {"type": find_field_type(name) or name} if name else {}
 
     @staticmethod

@@ -13,7 +13,7 @@ from archgen.plugins.xmi import uml_values
 from archgen.plugins.xmi.import_ledger import OWN_PREFIX, ImportLedger, make_hints
 from archgen.plugins.xmi.template_classes import SIGNATURE_KINDS, read_generic_names
 from archgen.plugins.xmi.uml_catalogue import read_description
-from archgen.plugins.xmi.uml_index import Reference, UmlIndex, get_id, get_kind, get_name, list_child_elements
+from archgen.plugins.xmi.uml_index import Reference, get_id, get_kind, get_name, list_child_elements
 
 _UNDECLARED = (f"{OWN_PREFIX}name.", f"{OWN_PREFIX}choices.")
 """Ids of types that archgen wrote because something names them: nobody declares them."""
@@ -23,8 +23,8 @@ _MESSAGE = re.compile(r"[a-zA-Z][a-zA-Z0-9_]*(?:/msg)?/[A-Z][A-Za-z0-9_]*\Z")
 class UmlDataTypes:
     """Makes the section `types`. Nothing else than the file says: a type with a field of unknown type has no fields."""
 
-    def __init__(self, index: UmlIndex, ledger: ImportLedger, elements: Iterable[XmlElement]) -> None:
-        self._index, self._ledger = index, ledger
+    def __init__(self, ledger: ImportLedger, elements: Iterable[XmlElement]) -> None:
+        self._index, self._ledger = ledger.index, ledger
         self._elements: dict[str, XmlElement] = {}
         self._generic_names: dict[str, tuple[str, ...]] = {}
         for element in elements:
@@ -71,9 +71,7 @@ class UmlDataTypes:
                 words = f"the fields of `{get_name(element)[:80]}` are not taken: of `{get_name(child)[:80]}` {why}"
                 self._ledger.leave(child, words, others=others)
                 return None
-            texts = read_description(self._index, self._ledger, child)
-            comment = texts.get("comment") or texts.get("description")
-            fields[name] = {"type": known + uml_values.write_array(child)} | ({"comment": comment} if comment else {})
+            fields[name] = {"type": known + uml_values.write_array(child)} | self._read_comment(child)
         return fields or None
 
     def _is_known(self, type_name: str, written: str) -> bool:
@@ -160,12 +158,14 @@ class UmlDataTypes:
                 for child in list_child_elements(element, "Property"):
                     self._ledger.take(child)
                 body["fields"] = {key: each if len(each) > 1 else each["type"] for key, each in fields.items()}
-            texts = read_description(self._index, self._ledger, element)
-            comment = texts.get("comment") or texts.get("description")
-            body |= {"comment": comment} if comment else {}
-            section[name] = body | make_hints(element)
+            section[name] = body | self._read_comment(element) | make_hints(element)
             self._ledger.take(element)
         return section
+
+    def _read_comment(self, element: XmlElement) -> dict[str, object]:
+        texts = read_description(self._ledger, element)
+        comment = texts.get("comment") or texts.get("description")
+        return {"comment": comment} if comment else {}
 
     def _write_values(self, element: XmlElement) -> dict[str, object]:
         values = [

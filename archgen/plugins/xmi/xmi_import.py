@@ -50,18 +50,17 @@ def convert_documents(documents: Sequence[XmiDocument], index: UmlIndex, ledger:
     for element in index.doubled:
         words = f"{name_element(element)} has the id of another element: references mean the first one of the two"
         ledger.note(element, words, "export the model again, or give it an id of its own", "xmi:id")
-    catalogue = make_catalogue(documents, index, ledger)
+    catalogue = make_catalogue(documents, ledger)
     uses = InterfaceUses(index, catalogue)
-    sorting = ClassSorting(index, ledger, catalogue, uses)
-    assembly = ComponentAssembly(index, ledger, catalogue, uses, sorting)
+    sorting = ClassSorting(ledger, catalogue, uses)
+    assembly = ComponentAssembly(sorting)
     assign_port_ids(assembly, index.known_ids)
-    wiring = PortWiring(index, ledger, catalogue, sorting, assembly)
-    components = ComponentSections(index, ledger, uses, assembly, wiring)
-    deployment = DeploymentSections(index, ledger, catalogue, assembly)
+    components = ComponentSections(assembly, PortWiring(assembly))
+    deployment = DeploymentSections(assembly)
     classes = [facts.element for facts in sorting.facts.values() if facts.sort == "data"]
     sections = {
         "component_types": components.make_types(),
-        "types": UmlDataTypes(index, ledger, (*catalogue.data_types, *classes)).make_types(),
+        "types": UmlDataTypes(ledger, (*catalogue.data_types, *classes)).make_types(),
         "groups": components.make_groups(),
         "hosts": deployment.make_hosts(),
         "links": deployment.make_links(),

@@ -11,12 +11,19 @@ from itertools import pairwise
 
 from archgen.frozen import dataclass, replace
 from archgen.model.architecture import Architecture, Chain, Waypoint
+from archgen.model.latest_result import remember_latest
 from archgen.timing.analysis import Analysis, ChainResult, ChainTerm, ChainVerdict, ShareDeadline
 from archgen.timing.chains import chain_regions
 from archgen.timing.chains.chain_verdicts import judge_deadline, judge_shares, may_be_late
 from archgen.timing.chains.cost_network import CostNetwork, PathAim
-from archgen.timing.chains.element_index import ChainPoint
-from archgen.timing.chains.extreme_paths import find_aimed_paths, find_extreme_path, find_extreme_value, sum_path
+from archgen.timing.chains.element_index import ChainPoint, ElementIndex
+from archgen.timing.chains.extreme_paths import (
+    ExtremePath,
+    find_aimed_paths,
+    find_extreme_path,
+    find_extreme_value,
+    sum_path,
+)
 from archgen.timing.chains.path_search import CostedPath, PathSet, RouteRegion
 from archgen.timing.figures import figure_wording
 from archgen.timing.figures.timing_values import ZERO_VALUE, TimingValue
@@ -39,8 +46,8 @@ class BoundedPath:
 
 
 @dataclass(frozen=True, slots=True)
-class LateChain:
-    """A chain that can miss its deadline, or is not proven to meet it: its bound, its best case, and the terms."""
+class JudgedChain:
+    """A chain that is not known to meet its deadline: its bound, its best case, and the terms."""
 
     chain: Chain
     bound: TimingValue
@@ -63,11 +70,28 @@ def find_chain_slack(network: CostNetwork, architecture: Architecture, asked_cha
     """Return what the bound of a chain leaves of its deadline, in ns, and look for no other figure; None where either is open."""
     if asked_chain.deadline is None or asked_chain.unresolved:
         return None
-    chain_points = network.index_elements(architecture).resolve_points(asked_chain.through)
-    extreme_path = find_extreme_path(network, chain_regions.lay_out_chain(network, chain_points), "bound")
+    extreme_path = _find_longest(network, architecture, asked_chain)[1]
     if extreme_path is None or extreme_path.value.value is None or not is_known_bound(extreme_path.value):
         return None
     return asked_chain.deadline.value - extreme_path.value.value
+
+
+_LongestPath = tuple[Sequence[RouteRegion], ExtremePath | None]
+
+
+def _find_longest(network: CostNetwork, architecture: Architecture, asked_chain: Chain) -> _LongestPath:
+    """Return a chain laid out, and its longest path. Several rules ask for these: they are found once."""
+    elements = network.index_elements(architecture)
+    known_paths = _open_longest_paths(elements)
+    if asked_chain.through not in known_paths:
+        regions = chain_regions.lay_out_chain(network, elements.resolve_points(asked_chain.through))
+        known_paths[asked_chain.through] = regions, find_extreme_path(network, regions, "bound")
+    return known_paths[asked_chain.through]
+
+
+@remember_latest
+def _open_longest_paths(_: ElementIndex) -> dict[tuple[Waypoint, ...], _LongestPath]:
+    return {}
 
 
 def bound_all_chains(analysis: Analysis, architecture: Architecture) -> dict[str, ChainResult]:
@@ -79,7 +103,7 @@ def bound_all_chains(analysis: Analysis, architecture: Architecture) -> dict[str
     }
 
 
-def find_unmet_chains(analysis: Analysis, architecture: Architecture, margin: Fraction) -> Iterator[LateChain]:
+def find_unmet_chains(analysis: Analysis, architecture: Architecture, margin: Fraction) -> Iterator[JudgedChain]:
     """Yield the chains that can miss their deadlines, and those of which that cannot be excluded, without other figures.
 
     `margin` is the share of each deadline that must stay free.
@@ -88,11 +112,8 @@ def find_unmet_chains(analysis: Analysis, architecture: Architecture, margin: Fr
     for asked_chain in architecture.chains.values():
         if asked_chain.deadline is None or asked_chain.unresolved:
             continue
-        regions = chain_regions.lay_out_chain(
-            network, network.index_elements(architecture).resolve_points(asked_chain.through)
-        )
         # Only the bound: each other aim would cost a graph of its own, and rules need none of chains that are in time.
-        extreme_path = find_extreme_path(network, regions, "bound")
+        regions, extreme_path = _find_longest(network, architecture, asked_chain)
         if extreme_path is not None:
             view, path, bound = extreme_path
             deadline = TimingValue((1 - margin) * asked_chain.deadline.value)
@@ -103,7 +124,23 @@ def find_unmet_chains(analysis: Analysis, architecture: Architecture, margin: Fr
             can_be_missed = judge_deadline(bound, best, TimingValue(asked_chain.deadline.value)) == "missed"
             if can_be_missed or may_be_late(bound, deadline):
                 verdict: ChainVerdict = "missed" if can_be_missed else "not proven"
-                yield LateChain(asked_chain, bound, best, verdict, build_terms(view, path))
+                yield JudgedChain(asked_chain, bound, best, verdict, build_terms(view, path))
+
+
+def find_open_chains(analysis: Analysis, architecture: Architecture) -> Iterator[JudgedChain]:
+    """Yield the chains of whose deadlines nobody can say whether they are met, since figures are missing."""
+    network = CostNetwork.of_analysis(analysis)
+    for asked_chain in architecture.chains.values():
+        if asked_chain.deadline is None or asked_chain.unresolved:
+            continue
+        regions, extreme_path = _find_longest(network, architecture, asked_chain)
+        # Where all is known of what it passes, its best case need not be looked for.
+        if extreme_path is None or extreme_path.value.complete:
+            continue
+        view, path, bound = extreme_path
+        best = find_extreme_value(network, regions, "best")
+        if judge_deadline(bound, best, TimingValue(asked_chain.deadline.value)) == "open":
+            yield JudgedChain(asked_chain, bound, best, "open", build_terms(view, path))
 
 
 def find_missed_shares(

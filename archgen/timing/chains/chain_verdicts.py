@@ -1,8 +1,8 @@
-"""What is known of a chain's deadline: the only place that judges it."""
+"""What is known of a limit, and of a chain's deadline: the only place that judges it."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from fractions import Fraction
 from typing import Literal
 
@@ -12,6 +12,34 @@ from archgen.model.quantity import parse_share
 from archgen.timing.analysis import ChainResult, ChainVerdict, ShareDeadline
 from archgen.timing.figures.timing_values import TimingValue
 from archgen.timing.figures.value_arithmetic import is_boundless, is_known_bound, is_unfound
+
+LimitState = Literal["kept", "broken", "unknown"]
+
+
+def judge_upper_limit(bound: TimingValue, limit: Fraction) -> LimitState:
+    """Return whether a duration stays within a limit; one without a bound, though no figure is missing, does not."""
+    if bound.value is not None and bound.value > limit:
+        return "broken"
+    if is_known_bound(bound):
+        return "kept"
+    is_without_bound = (is_unfound(bound) or (bound.value is None and bound.complete)) and not bound.missing
+    return "broken" if is_boundless(bound) or is_without_bound else "unknown"
+
+
+def judge_lower_limit(rate: TimingValue, limit: Fraction) -> LimitState:
+    """Return whether a rate is at least as high as a limit."""
+    if rate.value is None or not (rate.complete or rate.side != "exact"):
+        return "unknown"
+    is_kept = rate.value >= limit
+    # What is only known from the other side may be more, or less.
+    return "unknown" if rate.side == ("at most" if is_kept else "at least") else "kept" if is_kept else "broken"
+
+
+def find_worst_state(states: Iterable[LimitState]) -> LimitState:
+    """Return the state of a limit that several figures have to keep: one that breaks it is enough."""
+    found = set(states)
+    return "broken" if "broken" in found else "unknown" if "unknown" in found else "kept"
+
 
 SeenVerdict = Literal["kept", "late", "too few"]
 """What simulated or recorded reactions say of the deadline of a share: `too few` of them to say anything."""

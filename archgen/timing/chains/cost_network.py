@@ -8,6 +8,7 @@ from typing import Literal
 
 from archgen.frozen import dataclass, field
 from archgen.model.architecture import Architecture
+from archgen.model.latest_result import remember_latest
 from archgen.timing.analysis import Analysis, RunResponse
 from archgen.timing.chains.element_index import ElementIndex, MeasuredBasis
 from archgen.timing.chains.path_search import CostGraph, Hop
@@ -43,9 +44,8 @@ class CostNetwork:
 
     @classmethod
     def of_analysis(cls, analysis: Analysis) -> CostNetwork:
-        """Prepare an analysis for questions about paths."""
-        names = tuple(analysis.system.activities)
-        return cls(StepDelays.of_analysis(analysis), names, {name: vertex for vertex, name in enumerate(names)})
+        """Prepare an analysis for questions about paths; the one that was asked of last is prepared already."""
+        return _prepare_network(analysis)
 
     def list_views(self) -> tuple[CostNetwork, ...]:
         """Return this network, which has none, and its views with runs where there are some."""
@@ -71,9 +71,9 @@ class CostNetwork:
         return self._arcs_by_ends[arc.source, arc.target]
 
     def index_elements(self, architecture: Architecture) -> ElementIndex:
-        """Return what the elements of chains stand for in the architecture that was analysed."""
-        if not self._indices:
-            self._indices.append(ElementIndex(self.steps.analysis.system, architecture))
+        """Return what the elements of chains stand for in an architecture with this timing."""
+        if not self._indices or self._indices[0].architecture is not architecture:
+            self._indices[:] = [ElementIndex(self.steps.analysis.system, architecture)]
         return self._indices[0]
 
     def find_measured_basis(self) -> MeasuredBasis:
@@ -130,6 +130,12 @@ class CostNetwork:
         for arc_index, (arc, costs) in enumerate(zip(self.arcs, steps, strict=True)):
             hops[self.vertex_of[arc.source]].append(Hop(self.vertex_of[arc.target], weigh(costs), arc_index))
         return hops, [weigh(costs) for costs in starts]
+
+
+@remember_latest
+def _prepare_network(analysis: Analysis) -> CostNetwork:
+    names = tuple(analysis.system.activities)
+    return CostNetwork(StepDelays.of_analysis(analysis), names, {name: vertex for vertex, name in enumerate(names)})
 
 
 def _make_scale(rows: list[tuple[TimingValue, ...]]) -> Callable[[tuple[TimingValue, ...]], int]:

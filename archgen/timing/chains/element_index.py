@@ -29,7 +29,7 @@ class ElementIndex:
 
     def __init__(self, system: TimingSystem, architecture: Architecture) -> None:
         """Go through all activities."""
-        self._system, self._architecture = system, architecture
+        self._system, self.architecture = system, architecture
         self._of_node: dict[str, list[str]] = {}
         self._of_component: dict[str, list[str]] = {}
         for activity in system.activities.values():
@@ -48,9 +48,9 @@ class ElementIndex:
             return ChainPoint((point.id,) if point.id in activities else tuple(self._of_node.get(point.id, ())))
         if point.kind == "component":
             # A composed component is the worst way through its leaves.
-            leaves = self._architecture.leaves_of(point.id)
+            leaves = self.architecture.leaves_of(point.id)
             return ChainPoint(tuple(each for leaf in leaves for each in self._of_component.get(leaf, ())))
-        output = self._architecture.outputs.get(point.id)
+        output = self.architecture.outputs.get(point.id)
         owners = self._of_component.get(output.component, []) if output else []
         publishing = [name for name in owners if point.id in activities[name].outputs]
         return ChainPoint(tuple(publishing or owners), point.id)

@@ -19,11 +19,11 @@ from archgen.timing.chains.unfound_bounds import describe_unfound_places, group_
 from archgen.timing.chains.working_lines import ReasonLine, WorkingLines
 from archgen.timing.figures import figure_wording
 from archgen.timing.figures.timing_values import TimingValue
-from archgen.timing.figures.value_arithmetic import is_known_bound, is_unfound, list_assumptions, multiply_value
+from archgen.timing.figures.value_arithmetic import is_known_bound, is_unfound, list_assumptions
 from archgen.timing.load.host_loads import activity_share
 from archgen.timing.load.response_terms import ResponseTerms
-from archgen.timing.rates.link_traffic import work_out_link
-from archgen.timing.system.timing_system import Activity, Arc
+from archgen.timing.rates.link_traffic import find_sending_rate, work_out_link
+from archgen.timing.system.timing_system import Activity
 
 _FIGURE_FORMATS: Mapping[str, Callable[[Fraction], str]] = {
     "duration": figure_wording.format_duration,
@@ -180,7 +180,7 @@ def _write_traffic(analysis: Analysis, link: str, topic: str, traffic: TimingVal
     parts: list[str] = []
     known_sum = Fraction(0)
     for arc in arcs:
-        rate = _sending_rate(analysis, arc)
+        rate = find_sending_rate(analysis, arc)
         if rate.value is None or arc.size is None:
             return total
         known_sum += rate.value * arc.size
@@ -190,15 +190,6 @@ def _write_traffic(analysis: Analysis, link: str, topic: str, traffic: TimingVal
     numbers = {part: parts.count(part) for part in parts}
     formula = " + ".join(part if number == 1 else f"{number} x {part}" for part, number in numbers.items())
     return f"{'at most ' if traffic.side == 'at most' else ''}{formula} = {figure_wording.format_size(traffic.value)}/s"
-
-
-def _sending_rate(analysis: Analysis, arc: Arc) -> TimingValue:
-    """Return how often something is sent along an arc: an answer as often as its client asks."""
-    if arc.role == "data":
-        return analysis.outputs[arc.source, arc.output].rate
-    client, key = (arc.source, arc.output) if arc.role == "request" else (arc.target, arc.input)
-    calls = analysis.system.activities[client].calls.get(key, Fraction(1))
-    return multiply_value(analysis.paces[client].rate, calls)
 
 
 def _activity_lines(analysis: Analysis, name: str, depth: int, *, rate_only: bool = False) -> Iterator[ReasonLine]:

@@ -170,10 +170,8 @@ def _write_firing(
     smallest = [min(key_gaps) for key_gaps in by_key.values()]
     waits_for_all = activity.mode == "all" and len(smallest) > 1
     value = max(smallest) if waits_for_all else min(gaps)
-    formula, words = (
-        _write(value),
-        [] if len(gaps) == 1 else ["the largest counts" if waits_for_all else "the smallest counts"],
-    )
+    formula = _write(value)
+    words = [] if len(gaps) == 1 else ["the largest counts" if waits_for_all else "the smallest counts"]
     if len(gaps) > 1:
         shown = smallest if waits_for_all else gaps
         formula = f"{'max' if waits_for_all else 'min'}({', '.join(map(_write, shown))})"

@@ -7,7 +7,7 @@ from fractions import Fraction
 
 from archgen.frozen import dataclass, replace
 from archgen.timing.analysis import Analysis
-from archgen.timing.chains.limit_states import LimitState, judge_upper_limit
+from archgen.timing.chains.chain_verdicts import LimitState, judge_upper_limit
 from archgen.timing.chains.step_delays import StepDelays
 from archgen.timing.figures.timing_values import ZERO_VALUE, TimingValue
 from archgen.timing.figures.value_arithmetic import sum_bounds

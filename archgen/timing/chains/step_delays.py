@@ -106,10 +106,8 @@ class StepDelays:
         if reader.behaviour is None or reader.behaviour == "once":
             return _undefined_delay(reader)
         verb_text = "takes the answer of" if arc.role == "answer" else "reads"
-        gap_text, storing_text = (
-            _write_gap(self.arrivals.activation_gap(reader.id)),
-            _write_storing(self.storing_wait(arc)),
-        )
+        gap_text = _write_gap(self.arrivals.activation_gap(reader.id))
+        storing_text = _write_storing(self.storing_wait(arc))
         why = f"{verb_text} {arc.topic}{gap_text}{storing_text}{_write_overtaking(self.overtaking_wait(arc))}"
         return StepDelay(value, why, _span_of_keys(reader, "period", "rate"))
 

@@ -9,8 +9,7 @@ from archgen.frozen import dataclass
 from archgen.timing.analysis import Analysis, ChainTerm
 from archgen.timing.chains.trigger_arrivals import TriggerArrivals
 from archgen.timing.figures import figure_wording
-from archgen.timing.figures.response_tier import ResponseTier
-from archgen.timing.figures.timing_values import TimingValue
+from archgen.timing.figures.timing_values import ResponseTier, TimingValue
 from archgen.timing.figures.value_arithmetic import is_boundless, is_unfound
 
 _TIER_PHRASES: Mapping[ResponseTier, str] = {

@@ -1,4 +1,4 @@
-"""Figures that say what they rest on: exact, a bound from one side, or unknown and why."""
+"""Figures that say what they rest on: exact, a bound from one side, or unknown and why; and how responses are found."""
 
 from __future__ import annotations
 
@@ -26,6 +26,28 @@ class TimingValue:
     side: Literal["exact", "at least", "at most"] = "exact"
 
 
+ResponseTier = Literal[
+    "declared",
+    "dedicated",
+    "host",
+    "fair",
+    "non_preemptive",
+    "fifo",
+    "ros2_executor",
+    "edf",
+    "priorities",
+    "executor",
+    "cores",
+    "whole host",
+    "whole way",
+    "unknown",
+]
+"""How a response time was found (docs/timing.md, "Response times"): `declared`; `dedicated`, assuming a core
+of its own; `host`, any work-conserving scheduler of one core; `priorities`, fixed ones; `fair`, threads that Linux
+shares the cores among; `executor`, single-threaded; `cores`, several; `whole host`, several taken as one; `whole way`,
+over hosts and links; the words of an order (`non_preemptive`, `fifo`,
+`edf`, `ros2_executor`): one thread or core that keeps to it.
+"""
 UNKNOWN_VALUE = TimingValue(None, complete=False)
 ZERO_VALUE = TimingValue(Fraction(0))
 MAX_NAMED_MISSING = 12

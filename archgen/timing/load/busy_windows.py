@@ -1,4 +1,4 @@
-"""Busy windows: how long work can hold a processor, in integer ticks.
+"""Busy windows: how long work can hold a processor, and threads all of several cores, in integer ticks.
 
 `longest_busy_period` holds for any work-conserving scheduler. `worst_response` is response-time analysis over all
 activations of a busy period (Lehoczky 1990, with jitter as in Tindell, Burns and Wellings 1994), counted from the
@@ -12,7 +12,9 @@ and jitter are one term.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Sequence
+from fractions import Fraction
+from typing import TypeVar
 
 from archgen.frozen import NamedTuple
 from archgen.timing.load.event_streams import EventStream, EventStreams, earliest_arrivals
@@ -24,9 +26,14 @@ _MAX_TERMS_PER_SEARCH = 6_000_000
 _TERMS_PER_ACTIVATION = 8
 """Looking at one more activation takes as long as so many terms."""
 # Fixed-point numbers, not Fractions: the start of a search is only a lower bound, so that rounding down is safe.
-_SHARE_BITS = 64
-_WHOLE_SHARE = 1 << _SHARE_BITS
+SHARE_BITS = 64
+WHOLE_SHARE = 1 << SHARE_BITS
 """A whole processor, in the parts that shares are counted in."""
+
+
+def round_up_share(share: Fraction) -> int:
+    """Return a share of a processor in such parts, rounded up."""
+    return -((-share.numerator << SHARE_BITS) // share.denominator)
 
 
 class DivergedError(Exception):
@@ -114,7 +121,7 @@ class GrowingLoad:
                     scaled_rate, scaled_offset = _lower_bound(stream, cost)
                     self._add_general((period, jitter, distance, per_period), cost * batch)
                 else:
-                    scaled_rate = (cost * batch << _SHARE_BITS) // period
+                    scaled_rate = (cost * batch << SHARE_BITS) // period
                     scaled_offset = scaled_rate * jitter
                     place = places.setdefault((period, jitter), len(terms))
                     if place < len(terms):
@@ -154,10 +161,10 @@ class GrowingLoad:
 def _lower_bound(stream: EventStream, cost: int) -> tuple[int, int]:
     """Return a lower bound of a stream's work in a window t: rate and offset of rate t + offset, both rounded down."""
     period, jitter, distance, per_period, batch = stream
-    scaled_rate = (cost * batch * per_period << _SHARE_BITS) // period
+    scaled_rate = (cost * batch * per_period << SHARE_BITS) // period
     if distance:
         # eta-plus is the smaller of (t + J) / P and t / d, of which the second has no offset: only the rate is sure.
-        return min(scaled_rate, (cost * batch << _SHARE_BITS) // distance), 0
+        return min(scaled_rate, (cost * batch << SHARE_BITS) // distance), 0
     return scaled_rate, scaled_rate * jitter
 
 
@@ -257,10 +264,10 @@ def _find_fixed_point(own_work: int, demand: DemandFunction, spend: Callable[[in
     """Return the least t with own work + demand(t) <= t, searching from `start`."""
     within, term_count, scaled_rate, scaled_offset = demand
     # More than t comes in each t: there is no such t, and no need to look for it.
-    if scaled_rate >= _WHOLE_SHARE and (scaled_rate > _WHOLE_SHARE or own_work or scaled_offset):
+    if scaled_rate >= WHOLE_SHARE and (scaled_rate > WHOLE_SHARE or own_work or scaled_offset):
         raise DivergedError
     lower_bound = (
-        ((own_work << _SHARE_BITS) + scaled_offset) // (_WHOLE_SHARE - scaled_rate) if scaled_rate < _WHOLE_SHARE else 0
+        ((own_work << SHARE_BITS) + scaled_offset) // (WHOLE_SHARE - scaled_rate) if scaled_rate < WHOLE_SHARE else 0
     )
     # The smallest window is 1 tick: it stands for one just longer than nothing, in which all first jobs come.
     window = max(start, own_work, lower_bound, 1)
@@ -271,3 +278,32 @@ def _find_fixed_point(own_work: int, demand: DemandFunction, spend: Callable[[in
             # At the smallest window the need itself is the answer, which may be 0: work without execution time.
             return work_sum if window == 1 else window
         window = work_sum
+
+
+_Amount = TypeVar("_Amount", int, Fraction)
+
+
+def divide_among_cores(lane_works: Sequence[int], pending_work: int, core_count: int) -> int:
+    """Return the longest time for which threads can keep all cores busy, rounded up."""
+    # The plain quotient is the answer where no thread has more work than it.
+    quotient = -(-(sum(lane_works) + pending_work) // core_count)
+    if not lane_works or max(lane_works) <= quotient:
+        return quotient
+    numerator, denominator = find_blocked_time(lane_works, pending_work, core_count)
+    return -(-numerator // denominator)
+
+
+def find_blocked_time(lane_works: Sequence[_Amount], pending_work: _Amount, core_count: int) -> tuple[_Amount, int]:
+    """Return the longest time B for which threads can keep all cores busy, as numerator and denominator.
+
+    m B = pending work + sum of min(work, B): no thread works longer than that time.
+    """
+    rest = sum(lane_works, start=pending_work)
+    # A whole sort: of a few dozen numbers it takes less than a tenth of `heapq.nlargest`.
+    largest_works = sorted(lane_works, reverse=True)[: core_count - 1]
+    # The k threads with the most work are busy all the time: what is left fills the other m - k cores.
+    for busy_count, work in enumerate(largest_works):
+        if work * (core_count - busy_count) <= rest:
+            return rest, core_count - busy_count
+        rest -= work
+    return rest, core_count - len(largest_works)

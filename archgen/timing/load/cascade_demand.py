@@ -11,17 +11,26 @@ from collections.abc import Callable, Sequence
 from fractions import Fraction
 
 from archgen.timing.figures.timing_values import UnknownCause, sum_fractions, sum_ratios
-from archgen.timing.load.busy_windows import ActivityWork, DemandFunction, GrowingLoad, add_demands
+from archgen.timing.load.busy_windows import SHARE_BITS, ActivityWork, DemandFunction, GrowingLoad, add_demands
 from archgen.timing.load.event_streams import EventStreams, max_arrivals
+from archgen.timing.load.inner_triggers import FiringArc
 from archgen.timing.load.level_cascades import ONCE_ORIGIN, EventOrigin, LevelCascades
 
-_SHARE_BITS = 64
+ModelFinder = Callable[[EventOrigin], EventStreams | UnknownCause]
+"""Finds the event model of what enters a core."""
+ArcModelFinder = Callable[[EventOrigin, FiringArc | None], EventStreams | UnknownCause]
+"""The same, told the arc by which it enters, where there is one."""
+
+
+def look_up_arcs(model_of: ArcModelFinder, entering_arcs: Sequence[FiringArc]) -> ModelFinder:
+    """Return what finds event models by their origins alone."""
+    return lambda origin: model_of(origin, entering_arcs[int(origin.key)] if origin.kind == "arc" else None)
 
 
 class CascadeDemand:
     """The demand of a level for given event models of what enters; an origin without a model has a cause instead."""
 
-    def __init__(self, level: LevelCascades, model_of: Callable[[EventOrigin], EventStreams | UnknownCause]) -> None:
+    def __init__(self, level: LevelCascades, model_of: ModelFinder) -> None:
         """Look up the event models of all that counts."""
         self.level = level
         self._streams: dict[EventOrigin, EventStreams] = {}
@@ -74,7 +83,7 @@ class CascadeDemand:
             rule = self.level.gate_rules[int(origin.key)]
             rate = rule.limit_rate(
                 [
-                    sum_fractions([Fraction(0), *(self.rate_of(each) * number for each, number in inputs.items())])
+                    sum_fractions(self.rate_of(each) * number for each, number in inputs.items())
                     for inputs in rule.inputs
                 ]
             )
@@ -104,7 +113,7 @@ class CascadeDemand:
         ).demand_function()
         once_work = volumes.get(ONCE_ORIGIN, 0)
         if once_work:
-            demand = add_demands(demand, DemandFunction(lambda _: once_work, 0, 0, once_work << _SHARE_BITS))
+            demand = add_demands(demand, DemandFunction(lambda _: once_work, 0, 0, once_work << SHARE_BITS))
         gate_volumes = [
             (int(origin.key), volume) for origin, volume in volumes.items() if origin.kind == "gate" and volume
         ]

@@ -379,12 +379,7 @@ class CorePaths:
         """Return the way to the step before a job, where that leads through other threads than these, else None."""
         if all(self.cores.unit_of[step] in units for step in job.steps[:-1]):
             return None
-        before = job.steps[-2]
-        return next(
-            (before, number)
-            for number, way in enumerate(self.cores.ways_to[before])
-            if way.entry == job.origin and way.steps == job.steps[:-1]
-        )
+        return self.cores.find_way_before(job.origin, job.steps)
 
     def _list_waiting_lanes(self, units: Iterable[ThreadUnit]) -> tuple[frozenset[EventOrigin], ...]:
         """Return what waits in each thread, or container, that takes an idle core as soon as it has work."""

@@ -7,12 +7,11 @@ the least urgent of them. So the busy period of that level bounds them all toget
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from fractions import Fraction
 
 from archgen.frozen import NamedTuple
-from archgen.timing.figures.response_tier import ResponseTier
-from archgen.timing.figures.timing_values import UnknownCause, unite_causes
+from archgen.timing.figures.timing_values import ResponseTier, UnknownCause, unite_causes
 from archgen.timing.load.busy_windows import (
     ActivityWork,
     DemandFunction,
@@ -26,10 +25,9 @@ from archgen.timing.load.busy_windows import (
     longest_wait_for_turn,
     subtract_demand,
 )
-from archgen.timing.load.cascade_demand import CascadeDemand
+from archgen.timing.load.cascade_demand import ArcModelFinder, CascadeDemand, ModelFinder, look_up_arcs
 from archgen.timing.load.event_streams import EventStreams, settles_at_full_load, streams_of_calls
 from archgen.timing.load.inner_core import InnerCore, urgency_of
-from archgen.timing.load.inner_triggers import FiringArc
 from archgen.timing.load.level_cascades import EventOrigin, LevelCascades
 from archgen.timing.load.queue_orders import QueueBound
 from archgen.timing.load.queue_responses import OrderedCore
@@ -88,15 +86,11 @@ def name_way(way: EntryWay) -> WayKey:
 
 def open_core_solver(
     inner_core: InnerCore,
-    model_of: Callable[[EventOrigin, FiringArc | None], EventStreams | UnknownCause],
+    model_of: ArcModelFinder,
     budget: SearchBudget,
 ) -> CoreSolver:
     """Return what finds the responses on a core, for the event models of what enters it (`model_of`)."""
-
-    def find_model(origin: EventOrigin) -> EventStreams | UnknownCause:
-        return model_of(origin, inner_core.entering_arcs[int(origin.key)] if origin.kind == "arc" else None)
-
-    return CoreSolver(inner_core, find_model, budget)
+    return CoreSolver(inner_core, look_up_arcs(model_of, inner_core.entering_arcs), budget)
 
 
 class CoreSolver:
@@ -108,7 +102,7 @@ class CoreSolver:
     def __init__(
         self,
         inner_core: InnerCore,
-        find_model: Callable[[EventOrigin], EventStreams | UnknownCause],
+        find_model: ModelFinder,
         budget: SearchBudget,
     ) -> None:
         """Take the event models of what enters from `find_model`."""

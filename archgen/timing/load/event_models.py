@@ -1,4 +1,4 @@
-"""Event models of what is activated, arrives and leaves, from what is known so far of the activities before it."""
+"""Event models of what is activated, sent, arrives and leaves, from what is known so far of the activities before it."""
 
 from __future__ import annotations
 
@@ -274,3 +274,21 @@ def _merge_models(models: Iterable[EventStreams | UnknownCause]) -> EventStreams
         else:
             streams += model
     return unite_causes(causes) if causes else merge_streams(streams)
+
+
+def sent_model(state: PropagationState, arc: Arc) -> EventStreams | UnknownCause:
+    """Return the event model of what is sent along an arc, at its source."""
+    if arc.role == "answer":
+        return answer_model(state, arc)
+    return sample_model(state, arc) if arc.role == "data" else leaving_model(state, arc)
+
+
+def sample_model(state: PropagationState, arc: Arc) -> EventStreams | UnknownCause:
+    """Return the event model of the samples that leave an arc's source.
+
+    Cached by source in the state, so it must be asked only once propagation is done.
+    """
+    model = state.leaving_models.get(arc.source)
+    if model is None:
+        model = state.leaving_models[arc.source] = leaving_model(state, arc)
+    return model

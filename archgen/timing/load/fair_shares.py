@@ -21,10 +21,10 @@ from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from fractions import Fraction
 from itertools import accumulate
+from math import lcm
 from typing import NamedTuple, TypeVar
 
 from archgen.timing.figures.timing_values import UnknownCause, sum_fractions
-from archgen.timing.load.busy_cores import divide_among_cores, find_blocked_time
 from archgen.timing.load.busy_windows import (
     ActivityWork,
     DemandFunction,
@@ -32,6 +32,8 @@ from archgen.timing.load.busy_windows import (
     GrowingLoad,
     SearchBudget,
     WorstActivation,
+    divide_among_cores,
+    find_blocked_time,
 )
 from archgen.timing.load.core_responses import CoreResponses
 from archgen.timing.load.event_streams import (
@@ -360,7 +362,7 @@ class FairSolver:
             ActivityWork(work.cost + lead * count, work.streams) for work, count in zip(own_works, uses, strict=True)
         ]
         own = GrowingLoad(work_and_lead).demand_function()
-        share = sum_fractions([Fraction(0), *(work_utilisation(each.cost, each.streams) for each in work_and_lead)])
+        share = sum_fractions(work_utilisation(each.cost, each.streams) for each in work_and_lead)
 
         def serve_within(window: int) -> int:
             cut = own.within(window) + lead
@@ -372,12 +374,9 @@ class FairSolver:
             )
 
         served_shares = [
-            group.cut_work(sum_fractions([Fraction(0), *(each.known_share for each in lanes)]), share)
-            for group, lanes in others.groups
+            group.cut_work(sum_fractions(each.known_share for each in lanes), share) for group, lanes in others.groups
         ]
-        return Interference(
-            DemandFunction(serve_within, others.term_count), sum_fractions([Fraction(0), *served_shares])
-        )
+        return Interference(DemandFunction(serve_within, others.term_count), sum_fractions(served_shares))
 
     def _find_window(self, thread: FairThread, own_works: Sequence[ActivityWork], others: _OtherWork) -> int:
         """Return the least window in which all that comes for a thread is done."""
@@ -453,17 +452,21 @@ class FairSolver:
 
     def _has_end(self, thread: FairThread, own_works: Sequence[ActivityWork], others: _OtherWork) -> bool:
         """Whether less comes in the long run than is done."""
-        own = sum_fractions([Fraction(0), *(work_utilisation(work.cost, work.streams) for work in own_works)])
-        rate = sum_fractions([Fraction(0), *(work_utilisation(1, work.streams) for work in own_works)])
+        own = sum_fractions(work_utilisation(work.cost, work.streams) for work in own_works)
+        rate = sum_fractions(work_utilisation(1, work.streams) for work in own_works)
         cut = own + rate * self.cores.lead if thread.changes_threads else own
-        beside, lane_shares = Fraction(0), [Fraction(0)]
-        for group, lanes in others.groups:
-            shares = [lane.known_share for lane in lanes]
-            beside += group.cut_work(sum_fractions([Fraction(0), *shares]), cut)
-            for share, lane in zip(shares, lanes, strict=True):
-                lane_shares += [share / lane.width] * lane.width
-        numerator, denominator = find_blocked_time(lane_shares, Fraction(0), self.cores.core_count)
-        return own + min(beside, numerator / denominator) < 1
+        # In whole parts of a core: sums of fractions would take most of the time of a thread.
+        known = [(group, [(lane.known_share, lane.width) for lane in lanes]) for group, lanes in others.groups]
+        divisors = [share.denominator * width for _, shares in known for share, width in shares]
+        whole = lcm(own.denominator, cut.denominator, *divisors)
+        own_parts, cut_parts, beside, lane_parts = int(own * whole), int(cut * whole), 0, [0]
+        for group, shares in known:
+            parts = [share.numerator * (whole // share.denominator) for share, _ in shares]
+            beside += group.cut_work(sum(parts), cut_parts)
+            for part, (_, width) in zip(parts, shares, strict=True):
+                lane_parts += [part // width] * width
+        blocked, divisor = find_blocked_time(lane_parts, 0, self.cores.core_count)
+        return own_parts + beside < whole or own_parts * divisor + blocked < whole * divisor
 
     def _collect_others(self, thread: FairThread) -> _OtherWork:
         """Return what all other groups may do beside a thread."""
@@ -493,7 +496,7 @@ class FairSolver:
         demand = GrowingLoad(sure_works).demand_function()
         shares = [work_utilisation(each.cost, each.streams) for each in sure_works]
         named_works = tuple(zip(unit, sure_works, strict=True))
-        share = sum_fractions([Fraction(0), *shares])
+        share = sum_fractions(shares)
         return _LaneWork(demand.within, share, demand.term_count, width, named_works)
 
     def _find_work_of_other(self, name: str) -> ActivityWork | None:

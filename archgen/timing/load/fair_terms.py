@@ -7,7 +7,7 @@ from dataclasses import replace
 from fractions import Fraction
 
 from archgen.frozen import dataclass
-from archgen.timing.load.busy_cores import find_blocked_time
+from archgen.timing.load.busy_windows import find_blocked_time
 from archgen.timing.load.core_terms import OWN_JOBS
 from archgen.timing.load.fair_shares import FairBound, FairSolver
 from archgen.timing.load.run_ways import EntryWay

@@ -25,13 +25,19 @@ changes any more. The first bound to fail would need another one that failed bef
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
-from fractions import Fraction
 from functools import cache
 from heapq import nlargest
 from itertools import islice
 
 from archgen.frozen import NamedTuple
-from archgen.timing.load.busy_windows import DivergedError, SearchBudget, WorstActivation
+from archgen.timing.load.busy_windows import (
+    SHARE_BITS,
+    WHOLE_SHARE,
+    DivergedError,
+    SearchBudget,
+    WorstActivation,
+    round_up_share,
+)
 from archgen.timing.load.cascade_demand import CascadeDemand
 from archgen.timing.load.core_paths import SharedWork, WayWork
 from archgen.timing.load.event_streams import EventStreams, earliest_arrivals, max_arrivals
@@ -42,11 +48,6 @@ _MAX_ROUNDS = 25
 """Repetitions for the delays in threads that several ways share."""
 _MAX_EVENTS = 300
 """Events in a row that are looked at on one way: more of them come only where next to nothing is left of the cores."""
-
-
-_SHARE_BITS = 64
-_WHOLE_SHARE = 1 << _SHARE_BITS
-"""A whole core, in the parts that shares are counted in."""
 
 
 class PendingShare(NamedTuple):
@@ -98,7 +99,7 @@ class IdleBacklog:
         self.work_within = cache(work_within)
         volumes = cores.cascades.volumes
         # Whole numbers, rounded up: a search from above may begin a little higher.
-        self.scaled_rates = {origin: _round_up(demand.rate_of(origin)) for origin in self.streams}
+        self.scaled_rates = {origin: round_up_share(demand.rate_of(origin)) for origin in self.streams}
         # What comes in a window is at most rate x window and this: a whole batch, and its jitter's worth.
         self.bursts = {origin: _find_burst(model) for origin, model in self.streams.items()}
         self.whole_rate = sum(rate * volumes[origin] for origin, rate in self.scaled_rates.items())
@@ -115,7 +116,7 @@ class IdleBacklog:
     def find(self) -> None:
         """Find all of it, by repetition where some thread serves several ways."""
         self.growths = {key: self._find_growth(way_work) for key, way_work in self.way_works.items()}
-        if any(growth >= _WHOLE_SHARE for growth in self.growths.values()):
+        if any(growth >= WHOLE_SHARE for growth in self.growths.values()):
             raise DivergedError
         is_shared = any(way_work.others or way_work.crowds for way_work in self.way_works.values())
         for _ in range(_MAX_ROUNDS):
@@ -284,13 +285,13 @@ class IdleBacklog:
         burst = (own_burst + self._sum_bursts(way_work.others)) * (core_count - 1) + self.whole_burst + core_count
         for members, threads in way_work.crowds:
             burst += self._sum_bursts(members) * core_count // threads + core_count
-        return (burst << _SHARE_BITS) // (core_count * (_WHOLE_SHARE - growth)) + 1
+        return (burst << SHARE_BITS) // (core_count * (WHOLE_SHARE - growth)) + 1
 
     def _sum_bursts(self, shared_works: Iterable[SharedWork]) -> int:
         total = 0
         for origin, work, way_before in shared_works:
             early = self.scaled_rates[origin] * self.delays[way_before] if way_before else 0
-            total += work * (self.bursts[origin] - (-early >> _SHARE_BITS))
+            total += work * (self.bursts[origin] - (-early >> SHARE_BITS))
         return total
 
 
@@ -304,10 +305,6 @@ def _find_burst(streams: EventStreams) -> int:
         stream.batch_size - (-stream.jitter * stream.max_rate_ratio[0] // stream.max_rate_ratio[1])
         for stream in streams
     )
-
-
-def _round_up(share: Fraction) -> int:
-    return -((-share.numerator << _SHARE_BITS) // share.denominator)
 
 
 def choose_largest_lanes(

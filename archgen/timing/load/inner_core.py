@@ -12,7 +12,7 @@ from archgen.timing.load.inner_triggers import FiringArc, InnerTriggers
 from archgen.timing.load.level_cascades import LevelCascades, build_level_cascades, number_arcs
 from archgen.timing.load.queue_responses import CoreQueue
 from archgen.timing.load.run_ways import EntryWay, Priority, find_entry_ways
-from archgen.timing.load.thread_work import ThreadWork, lower_crowded_threads
+from archgen.timing.load.thread_work import ThreadWork, find_priorities, lower_crowded_threads
 from archgen.timing.system.core_placement import ProcessingResource
 from archgen.timing.system.thread_pools import works_in_order
 from archgen.timing.system.timing_system import TimingSystem
@@ -79,10 +79,7 @@ def rank_threads(
 
 def _build_plain_thread(system: TimingSystem, unit: tuple[str, ...]) -> ThreadWork:
     """Return a thread with its priorities alone: its work is that of the cascades."""
-    priorities = [system.activities[name].priority for name in unit]
-    written_priorities = [priority for priority in priorities if priority is not None]
-    lowest = min(written_priorities) if len(written_priorities) == len(priorities) else None
-    highest = max(written_priorities, default=None)
+    lowest, highest = find_priorities(system, unit)
     return ThreadWork(unit, (), None, lowest, highest, Fraction(0), works_in_order(system, system.activities[unit[0]]))
 
 

@@ -12,17 +12,15 @@ activation no longer than the longest use of each other thread, and its own.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 
 from archgen.frozen import dataclass, replace
 from archgen.model.graph_search import find_strong_components
-from archgen.timing.figures.timing_values import UnknownCause
 from archgen.timing.load.busy_windows import SearchBudget
+from archgen.timing.load.cascade_demand import ArcModelFinder
 from archgen.timing.load.core_responses import open_core_solver
-from archgen.timing.load.event_streams import EventStreams
 from archgen.timing.load.inner_core import InnerCore, prepare_inner_core
-from archgen.timing.load.inner_triggers import FiringArc, InnerTriggers, find_inner_triggers
-from archgen.timing.load.level_cascades import EventOrigin
+from archgen.timing.load.inner_triggers import InnerTriggers, find_inner_triggers
 from archgen.timing.load.resource_waits import find_turn_times
 from archgen.timing.load.response_times import AnalysisEffort, find_responses
 from archgen.timing.load.thread_work import EventModels
@@ -43,7 +41,7 @@ class JoinedResources:
 
     def find_bounds(
         self,
-        model_of: Callable[[EventOrigin, FiringArc | None], EventStreams | UnknownCause],
+        model_of: ArcModelFinder,
         event_models: EventModels,
         budget: SearchBudget,
     ) -> Mapping[str, int]:

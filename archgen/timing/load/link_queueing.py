@@ -14,10 +14,10 @@ from archgen.frozen import replace
 from archgen.timing.figures.tick_unit import NS_PER_SECOND
 from archgen.timing.figures.timing_values import UnknownCause, sum_ratios, unite_causes
 from archgen.timing.load.busy_windows import ActivityWork, DivergedError, GrowingLoad, SearchBudget, longest_busy_period
+from archgen.timing.load.event_models import sent_model
 from archgen.timing.load.event_propagation import propagate_events
 from archgen.timing.load.propagation_state import PropagationState
 from archgen.timing.load.search_budgets import GroupBudgets
-from archgen.timing.load.sent_models import sent_model
 from archgen.timing.system.timing_system import Arc, TimingSystem, group_arcs
 from archgen.timing.system.trigger_graph import TriggerGraph, find_triggers
 

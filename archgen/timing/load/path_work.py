@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 
 from archgen.frozen import NamedTuple
-from archgen.timing.load.busy_cores import divide_among_cores
+from archgen.timing.load.busy_windows import divide_among_cores
 from archgen.timing.load.cascade_demand import CascadeDemand
 from archgen.timing.load.core_paths import CorePath
 from archgen.timing.load.event_streams import EventStream, EventStreams, max_arrivals

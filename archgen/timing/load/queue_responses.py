@@ -10,9 +10,9 @@ from archgen.frozen import dataclass, field
 from archgen.model.declared_timing import SchedulingOrder
 from archgen.timing.figures.timing_values import UnknownCause
 from archgen.timing.load.busy_windows import DivergedError, SearchBudget
+from archgen.timing.load.cascade_demand import ModelFinder
 from archgen.timing.load.event_streams import EventStream, EventStreams, delay_streams, streams_of_calls
 from archgen.timing.load.inner_triggers import InnerTriggers
-from archgen.timing.load.level_cascades import EventOrigin
 from archgen.timing.load.load_system import order_of_core
 from archgen.timing.load.queue_orders import (
     QueueBound,
@@ -204,7 +204,7 @@ class OrderedCore:
 
     queue: CoreQueue
     inner_triggers: InnerTriggers
-    find_model: Callable[[EventOrigin], EventStreams | UnknownCause]
+    find_model: ModelFinder
     ways_to: dict[str, tuple[EntryWay, ...]]
 
     def limit(

@@ -92,7 +92,7 @@ def find_load(state: PropagationState, resource_id: str) -> Fraction:
             for user, model in zip(users, models, strict=True)
             if not isinstance(model, UnknownCause)
         ]
-        load = sum_fractions([Fraction(0), *loads])
+        load = sum_fractions(loads)
         state.resource_loads[resource_id] = models, load
     return load
 
@@ -189,7 +189,7 @@ class Rivals(NamedTuple):
     @property
     def share(self) -> Fraction:
         """Return how much of the resource they take in the long run."""
-        return sum_fractions([Fraction(0), *(work_utilisation(each.worst, each.streams) for each in self.competitors)])
+        return sum_fractions(work_utilisation(each.worst, each.streams) for each in self.competitors)
 
     def work_within(self, window: int) -> int:
         """Return for how long they may use it in a window: of what came in it, or up to their response before."""

@@ -6,8 +6,7 @@ from collections.abc import Iterable, Iterator
 from itertools import chain
 
 from archgen.frozen import replace
-from archgen.timing.figures.response_tier import ResponseTier
-from archgen.timing.figures.timing_values import UnknownCause
+from archgen.timing.figures.timing_values import ResponseTier, UnknownCause
 from archgen.timing.load.busy_windows import DivergedError, SearchBudget, WorstActivation
 from archgen.timing.load.core_responses import CoreResponses, CoreSolver
 from archgen.timing.load.core_terms import CoreTerms, explain_core_hold, explain_core_window, explain_queue_bound
@@ -20,7 +19,13 @@ from archgen.timing.load.run_ways import EntryWay
 from archgen.timing.load.search_budgets import GroupBudgets
 from archgen.timing.load.shared_core_terms import SharedCoreTerms
 from archgen.timing.load.step_updates import StepUpdates
-from archgen.timing.load.thread_work import CoreWindow, EventModels, WorstResponse, build_core_threads, find_work
+from archgen.timing.load.thread_work import (
+    CoreWindow,
+    EventModels,
+    WorstResponse,
+    build_core_threads,
+    find_work,
+)
 from archgen.timing.load.transaction_windows import ENDLESS, TransactionWindows, explain_way_window
 from archgen.timing.load.whole_hosts import list_host_limits
 from archgen.timing.load.work_terms import (

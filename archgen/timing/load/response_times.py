@@ -13,8 +13,7 @@ from itertools import accumulate
 from math import lcm
 
 from archgen.frozen import NamedTuple
-from archgen.timing.figures.response_tier import ResponseTier
-from archgen.timing.figures.timing_values import UnknownCause, sum_fractions, unite_causes
+from archgen.timing.figures.timing_values import ResponseTier, UnknownCause, sum_fractions, unite_causes
 from archgen.timing.load.busy_windows import (
     NO_DEMAND,
     ActivityWork,
@@ -30,6 +29,7 @@ from archgen.timing.load.busy_windows import (
     subtract_demand,
 )
 from archgen.timing.load.event_streams import settles_at_full_load
+from archgen.timing.load.inner_core import urgency_of
 from archgen.timing.load.thread_work import (
     DIVERGED_CAUSE,
     OVERLOAD_CAUSE,
@@ -166,7 +166,8 @@ def find_responses(
     # without a priority (low None) always wait for everything.
     if stale_ids is not None:
         highest_stale = max(
-            (_highest_priority(thread) for thread in all_threads if not stale_ids.isdisjoint(thread.unit)), default=-1
+            (urgency_of(thread.highest_priority) for thread in all_threads if not stale_ids.isdisjoint(thread.unit)),
+            default=-1,
         )
         wanted_threads = [
             thread
@@ -201,11 +202,6 @@ def _soften_overload(thread_bound: tuple[ThreadWork, _ThreadBound]) -> tuple[Thr
     if response.cause == OVERLOAD_CAUSE:
         response = response._replace(cause=DIVERGED_CAUSE)
     return thread, _ThreadBound(response, worst)
-
-
-def _highest_priority(thread: ThreadWork) -> int:
-    """Return the greatest priority of a thread, -1 where it has none."""
-    return -1 if thread.highest_priority is None else thread.highest_priority
 
 
 def _leave_open(

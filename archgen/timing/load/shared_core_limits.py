@@ -6,8 +6,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from fractions import Fraction
 
 from archgen.timing.figures.timing_values import sum_fractions
-from archgen.timing.load.busy_cores import find_blocked_time
-from archgen.timing.load.busy_windows import SearchBudget
+from archgen.timing.load.busy_windows import SHARE_BITS, SearchBudget, find_blocked_time, round_up_share
 from archgen.timing.load.cascade_demand import CascadeDemand
 from archgen.timing.load.core_paths import CorePath, CorePaths
 from archgen.timing.load.idle_backlogs import IdleBacklog
@@ -24,7 +23,6 @@ _RANKED_TERMS = 300_000
 """The same where there are priorities, for what is urgent has far less in its way than in any order, and without limits."""
 _TERMS_PER_CALM_WAY = 16
 """Terms that a way takes where nothing comes twice in its windows."""
-_SHARE_BITS = 64
 
 
 class SharedCoreLimits:
@@ -79,11 +77,11 @@ class CoreShares:
         self._job_shares = [demand.rate_of(job.origin) * job.work for job in cores.jobs]
         self._unit_shares = {unit: self._sum_jobs(numbers) for unit, numbers in cores.job_numbers.items()}
         # Whole numbers, rounded up, for what is asked of each path: most are far from filling a core.
-        self._rough_shares = {unit: _round_up(share) for unit, share in self._unit_shares.items()}
+        self._rough_shares = {unit: round_up_share(share) for unit, share in self._unit_shares.items()}
         self._rough_total = sum(self._rough_shares.values())
 
     def _sum_jobs(self, job_numbers: Iterable[int]) -> Fraction:
-        return sum_fractions([Fraction(0), *(self._job_shares[number] for number in job_numbers)])
+        return sum_fractions(self._job_shares[number] for number in job_numbers)
 
     def fills_thread(self, unit: ThreadUnit) -> bool:
         """Whether a thread is busy all the time."""
@@ -94,7 +92,7 @@ class CoreShares:
         units = {unit: None for step in steps if (unit := self.cores.unit_of[step]) not in self.cores.reentrant_units}
         core_count = self.cores.core_count
         rough_share = sum([self._rough_shares[unit] for unit in units])
-        if not path.crowds and rough_share * (core_count - 1) + self._rough_total < core_count << _SHARE_BITS:
+        if not path.crowds and rough_share * (core_count - 1) + self._rough_total < core_count << SHARE_BITS:
             return False
         own_share = sum_fractions(
             [
@@ -108,13 +106,9 @@ class CoreShares:
             for _ in range(width)
         ]
         if path.crowds:
-            return own_share + sum_fractions([Fraction(0), *other_shares]) / core_count >= 1
+            return own_share + sum_fractions(other_shares) / core_count >= 1
         numerator, denominator = find_blocked_time(other_shares, Fraction(0), core_count)
         return own_share + numerator / denominator >= 1
-
-
-def _round_up(share: Fraction) -> int:
-    return -((-share.numerator << _SHARE_BITS) // share.denominator)
 
 
 def has_priorities(cores: SharedCores) -> bool:

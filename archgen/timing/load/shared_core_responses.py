@@ -20,10 +20,9 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from fractions import Fraction
 from functools import cache
 
-from archgen.timing.figures.response_tier import ResponseTier
-from archgen.timing.figures.timing_values import UnknownCause, unite_causes
+from archgen.timing.figures.timing_values import ResponseTier, UnknownCause, unite_causes
 from archgen.timing.load.busy_windows import DivergedError, SearchBudget, WorstActivation
-from archgen.timing.load.cascade_demand import CascadeDemand
+from archgen.timing.load.cascade_demand import ArcModelFinder, CascadeDemand, look_up_arcs
 from archgen.timing.load.core_paths import CorePath, CorePaths, LastStep, build_thread_work
 from archgen.timing.load.core_responses import CoreResponses
 from archgen.timing.load.event_streams import (
@@ -34,8 +33,6 @@ from archgen.timing.load.event_streams import (
     streams_of_calls,
 )
 from archgen.timing.load.idle_backlogs import find_idle_backlog
-from archgen.timing.load.inner_triggers import FiringArc
-from archgen.timing.load.level_cascades import EventOrigin
 from archgen.timing.load.load_system import list_storing_ids
 from archgen.timing.load.path_work import PathWork
 from archgen.timing.load.run_ways import EntryWay
@@ -59,7 +56,7 @@ _MAX_WAITING_EVENTS = 50
 
 def open_shared_solver(
     paths: CorePaths,
-    model_of: Callable[[EventOrigin, FiringArc | None], EventStreams | UnknownCause],
+    model_of: ArcModelFinder,
     known_bounds: tuple[Mapping[str, WorstResponse], Mapping[str, HostLimit]],
     budget: SearchBudget,
 ) -> SharedCoreSolver:
@@ -68,12 +65,8 @@ def open_shared_solver(
     `known_bounds` have the responses of the foreign units, which are found elsewhere, and what bounds each activity on
     its host as a whole.
     """
-    cores = paths.cores
-
-    def find_model(origin: EventOrigin) -> EventStreams | UnknownCause:
-        return model_of(origin, cores.entering_arcs[int(origin.key)] if origin.kind == "arc" else None)
-
-    return SharedCoreSolver(paths, CascadeDemand(cores.cascades, find_model), known_bounds, budget)
+    demand = CascadeDemand(paths.cores.cascades, look_up_arcs(model_of, paths.cores.entering_arcs))
+    return SharedCoreSolver(paths, demand, known_bounds, budget)
 
 
 class SharedCoreSolver:
@@ -95,7 +88,7 @@ class SharedCoreSolver:
         self.cause_of: dict[str, UnknownCause] = {}
         self.raised_names: set[str] = set()
         self.way_before = {
-            (name, number): self._find_way_before(way)
+            (name, number): self.cores.find_way_before(way.entry, way.steps)
             for name, ways in self.cores.ways_to.items()
             for number, way in enumerate(ways)
             if len(way.steps) > 1
@@ -107,15 +100,6 @@ class SharedCoreSolver:
         self.last_windows: dict[tuple[int, int], int] = {}
         self.busy_windows: dict[int, int] = {}
         """The longest window of each path (by identity): in each shorter one there was more to do than it lasts."""
-
-    def _find_way_before(self, way: EntryWay) -> WayKey:
-        """Return the way to the step before the last one of a way."""
-        before = way.steps[-2]
-        return next(
-            (before, number)
-            for number, shorter_way in enumerate(self.cores.ways_to[before])
-            if shorter_way.entry == way.entry and shorter_way.steps == way.steps[:-1]
-        )
 
     def solve(self) -> CoreResponses:
         """Find the responses of all runs together, from below."""

@@ -6,8 +6,7 @@ from collections.abc import Iterable, Iterator
 from fractions import Fraction
 
 from archgen.frozen import NamedTuple, dataclass, replace
-from archgen.timing.load.busy_cores import find_blocked_time
-from archgen.timing.load.busy_windows import DivergedError, SearchBudget, WorstActivation
+from archgen.timing.load.busy_windows import DivergedError, SearchBudget, WorstActivation, find_blocked_time
 from archgen.timing.load.core_paths import CorePath, SharedWork, WayWork, build_thread_work
 from archgen.timing.load.core_terms import OWN_JOBS
 from archgen.timing.load.event_streams import max_arrivals

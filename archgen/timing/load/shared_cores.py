@@ -55,6 +55,15 @@ class SharedCores:
     reentrant_units: Mapping[ThreadUnit, int]
     """Units of which several activations may run at once, with how many."""
 
+    def find_way_before(self, origin: EventOrigin, steps: tuple[str, ...]) -> WayKey:
+        """Return the way to the step before the last one of a way."""
+        before = steps[-2]
+        return next(
+            (before, number)
+            for number, way in enumerate(self.ways_to[before])
+            if way.entry == origin and way.steps == steps[:-1]
+        )
+
 
 def prepare_shared_cores(
     system: TimingSystem, resource: ProcessingResource, inner_triggers: InnerTriggers

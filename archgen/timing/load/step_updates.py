@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 from collections import ChainMap
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from typing import TYPE_CHECKING
 
 from archgen.timing.figures.timing_values import UnknownCause, is_same_cause
 from archgen.timing.load.busy_windows import SearchBudget
+from archgen.timing.load.cascade_demand import ArcModelFinder, look_up_arcs
 from archgen.timing.load.core_responses import CoreResponses, CoreSolver, open_core_solver
 from archgen.timing.load.event_models import activation_model, arriving_model
 from archgen.timing.load.event_streams import EventStreams
@@ -157,9 +158,7 @@ class StepUpdates(PropagationSteps):
                 limits[name] = limits[name].limit_to(limit) if name in limits else limit
         return limits
 
-    def _model_finder(
-        self, step: str, entering_models: dict[int, EventStreams | UnknownCause]
-    ) -> Callable[[EventOrigin, FiringArc | None], EventStreams | UnknownCause]:
+    def _model_finder(self, step: str, entering_models: dict[int, EventStreams | UnknownCause]) -> ArcModelFinder:
         """Return a look-up of event models of what enters a core, which notes those of arcs (by identity)."""
 
         def find_model(origin: EventOrigin, entry_arc: FiringArc | None) -> EventStreams | UnknownCause:
@@ -205,11 +204,8 @@ class StepUpdates(PropagationSteps):
 
     def open_windows(self, step: str) -> TransactionWindows:
         """Return what finds how long the ways of transactions take."""
-        find_model, transactions = self._model_finder(step, {}), self.transactions[step]
-
-        def find_entering(origin: EventOrigin) -> EventStreams | UnknownCause:
-            return find_model(origin, transactions.entering_arcs[int(origin.key)] if origin.kind == "arc" else None)
-
+        transactions = self.transactions[step]
+        find_entering = look_up_arcs(self._model_finder(step, {}), transactions.entering_arcs)
         budget = self.group_budgets.open_transactions(step, len(transactions.paths))
         return TransactionWindows(transactions, find_entering, self._find_foreign_model, self.state.place_ways, budget)
 

@@ -8,8 +8,7 @@ from fractions import Fraction
 from functools import lru_cache
 
 from archgen.frozen import NamedTuple, dataclass, replace
-from archgen.timing.figures.response_tier import ResponseTier
-from archgen.timing.figures.timing_values import UnknownCause, sum_fractions, sum_ratios, unite_causes
+from archgen.timing.figures.timing_values import ResponseTier, UnknownCause, sum_fractions, sum_ratios, unite_causes
 from archgen.timing.load.busy_windows import ActivityWork, WorstActivation
 from archgen.timing.load.event_streams import EventStreams
 from archgen.timing.system.core_placement import ProcessingResource
@@ -102,13 +101,11 @@ def build_thread(system: TimingSystem, unit: ThreadUnit, event_models: EventMode
     ]
     causes = [item for item in works_or_causes if isinstance(item, UnknownCause)]
     works = tuple(item for item in works_or_causes if isinstance(item, ActivityWork))
-    priorities = [item for name in unit if (item := system.activities[name].priority) is not None]
     return ThreadWork(
         unit,
         works,
         unite_causes(causes) if causes else None,
-        _lowest_priority(system, unit),
-        max(priorities, default=None),
+        *find_priorities(system, unit),
         sum_fractions(work_utilisation(work.cost, work.streams) for work in works),
         works_in_order(system, system.activities[unit[0]]),
     )
@@ -171,7 +168,7 @@ def _lowest_in_crowded(
         lane = name_lane(system, system.activities[name])
         if name in crowded_pools or unit_counts[lane] > 1:
             members_by_pool.setdefault(crowded_pools.get(name, lane), []).append(name)
-    lowest_by_pool = {key: _lowest_priority(system, names) for key, names in members_by_pool.items()}
+    lowest_by_pool = {key: find_priorities(system, names)[0] for key, names in members_by_pool.items()}
     lowest_of = {name: lowest_by_pool[key] for key, names in members_by_pool.items() for name in names}
     return {
         thread.unit[0]: lowest_of[name]
@@ -196,8 +193,9 @@ def _lowest_reached(priority: int | None, priority_spans: Iterable[tuple[int | N
     return priority
 
 
-def _lowest_priority(system: TimingSystem, names: Iterable[str]) -> int | None:
-    """Return the least priority of several activities, None where one of them has none."""
+def find_priorities(system: TimingSystem, names: Iterable[str]) -> tuple[int | None, int | None]:
+    """Return the least priority of several activities, None where one of them has none, and the greatest."""
     priorities = [system.activities[name].priority for name in names]
     written_priorities = [priority for priority in priorities if priority is not None]
-    return min(written_priorities) if len(written_priorities) == len(priorities) else None
+    lowest = min(written_priorities) if len(written_priorities) == len(priorities) else None
+    return lowest, max(written_priorities, default=None)

@@ -20,8 +20,8 @@ from functools import partial
 
 from archgen.frozen import NamedTuple
 from archgen.timing.figures.timing_values import UnknownCause
-from archgen.timing.load.busy_cores import divide_among_cores
-from archgen.timing.load.busy_windows import ActivityWork, DivergedError, GrowingLoad, SearchBudget
+from archgen.timing.load.busy_windows import ActivityWork, DivergedError, GrowingLoad, SearchBudget, divide_among_cores
+from archgen.timing.load.cascade_demand import ModelFinder
 from archgen.timing.load.event_streams import EventStreams, delay_streams, earliest_arrivals, max_arrivals
 from archgen.timing.load.level_cascades import EventOrigin
 from archgen.timing.load.run_ways import EntryWay
@@ -143,7 +143,7 @@ class TransactionWindows:
     def __init__(
         self,
         transactions: Transactions,
-        model_of: Callable[[EventOrigin], EventStreams | UnknownCause],
+        model_of: ModelFinder,
         foreign_model_of: Callable[[str, str], EventStreams | UnknownCause],
         place_ways: Mapping[str, Sequence[EntryWay]],
         budget: SearchBudget,

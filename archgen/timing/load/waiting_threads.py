@@ -17,8 +17,7 @@ from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, S
 from fractions import Fraction
 
 from archgen.frozen import NamedTuple
-from archgen.timing.figures.response_tier import ResponseTier
-from archgen.timing.figures.timing_values import UnknownCause, sum_fractions, unite_causes
+from archgen.timing.figures.timing_values import ResponseTier, UnknownCause, sum_fractions, unite_causes
 from archgen.timing.load.busy_windows import (
     ActivityWork,
     DemandFunction,
@@ -277,7 +276,7 @@ def _divide_demand(others: Sequence[ThreadWork], core_count: int) -> Interferenc
     demand = GrowingLoad([work for thread in others for work in thread.works]).demand_function()
     return Interference(
         DemandFunction(lambda window: -(-demand.within(window) // core_count), demand.term_count),
-        sum_fractions([Fraction(0), *(thread.share for thread in others)]) / core_count,
+        sum_fractions(thread.share for thread in others) / core_count,
     )
 
 

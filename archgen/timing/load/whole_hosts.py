@@ -11,7 +11,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 
 from archgen.frozen import NamedTuple
-from archgen.timing.figures.response_tier import ResponseTier
+from archgen.timing.figures.timing_values import ResponseTier
 from archgen.timing.load.core_responses import CoreResponses
 from archgen.timing.load.inner_core import InnerCore, prepare_inner_core
 from archgen.timing.load.inner_triggers import find_inner_triggers

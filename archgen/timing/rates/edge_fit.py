@@ -10,10 +10,9 @@ from archgen.timing.analysis import EdgeFit, EventPace, ResponseTime
 from archgen.timing.figures.tick_unit import NS_PER_SECOND
 from archgen.timing.figures.timing_values import ZERO_VALUE, TimingValue, UnknownCause
 from archgen.timing.figures.value_arithmetic import add_values, value_of_cause
-from archgen.timing.load.event_models import arriving_model
+from archgen.timing.load.event_models import arriving_model, sample_model
 from archgen.timing.load.event_streams import max_arrivals
 from archgen.timing.load.propagation_state import PropagationState
-from archgen.timing.load.sent_models import sample_model
 from archgen.timing.system.timing_system import Arc, TimingSystem
 
 _ONE = TimingValue(Fraction(1))
@@ -122,10 +121,8 @@ def _dropped_share(context: EdgeContext, reader: str) -> TimingValue:
         for firing_arc in system.arcs_into.get(target.id, ())
         if firing_arc.role == "data" and fires_each_time(system, firing_arc)
     ]
-    sent_rate, read_rate = (
-        add_values(context.outputs[firing_arc.source, firing_arc.output].rate for firing_arc in firing_arcs),
-        context.paces[target.id].rate,
-    )
+    sent_rate = add_values(context.outputs[firing_arc.source, firing_arc.output].rate for firing_arc in firing_arcs)
+    read_rate = context.paces[target.id].rate
     if not sent_rate.value or read_rate.value is None or not (sent_rate.complete and read_rate.complete):
         return (
             _unknown_of_either(sent_rate, read_rate)

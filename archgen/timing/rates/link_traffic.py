@@ -9,7 +9,7 @@ from functools import lru_cache
 from heapq import heapify, heapreplace
 
 from archgen.frozen import NamedTuple
-from archgen.timing.analysis import EventPace, LinkLoad, TopicLoad
+from archgen.timing.analysis import Analysis, EventPace, LinkLoad, TopicLoad
 from archgen.timing.figures import figure_wording
 from archgen.timing.figures.tick_unit import NS_PER_SECOND
 from archgen.timing.figures.timing_values import ZERO_VALUE, TimingValue, UnknownCause, sum_ratios
@@ -21,10 +21,10 @@ from archgen.timing.figures.value_arithmetic import (
     unknown_value,
     value_of_cause,
 )
+from archgen.timing.load.event_models import sent_model
 from archgen.timing.load.event_streams import EventStreams, max_arrivals
 from archgen.timing.load.link_queueing import longest_queueing
 from archgen.timing.load.propagation_state import PropagationState
-from archgen.timing.load.sent_models import sent_model
 from archgen.timing.load.work_terms import CountFormulas, EventCount, WorkTerm, group_terms
 from archgen.timing.rates.rate_table import RateTable
 from archgen.timing.system.timing_system import Arc, TimingSystem
@@ -127,6 +127,19 @@ def _sending_rate(rates: RateTable, arc: Arc) -> TimingValue:
     return multiply_value(
         rates.paces[client].rate, rates.state.system.activities[client].calls.get(request_key, Fraction(1))
     )
+
+
+def find_sending_rate(analysis: Analysis, arc: Arc) -> TimingValue:
+    """Return how often something is sent along an arc of an analysed system."""
+    if arc.role == "data":
+        return analysis.outputs[arc.source, arc.output].rate
+    client, key = (arc.source, arc.output) if arc.role == "request" else (arc.target, arc.input)
+    return multiply_value(analysis.paces[client].rate, analysis.system.activities[client].calls.get(key, Fraction(1)))
+
+
+def measure_arc_traffic(analysis: Analysis, arc: Arc) -> TimingValue:
+    """Return what runs along an arc of an analysed system, in B/s; those of a link add up to its traffic."""
+    return _bytes_per_second(arc.topic, arc.size, (find_sending_rate(analysis, arc),))
 
 
 def _largest_burst(state: PropagationState, arcs: Sequence[Arc], bandwidth: Fraction | None) -> TimingValue:

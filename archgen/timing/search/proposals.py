@@ -126,10 +126,21 @@ class _ProposalSearch:
             if triggers and self._try_orders(triggers):
                 return
         self._climb(lambda start: self.space.list_moves(start, self.best.late), _KEPT_TRIES)
-        if not self.hopeless and not self.keeps_triggers:
-            for choice in self.space.list_triggers(self.best.late) if self.best.late else ():
+        if not self.keeps_triggers and self.best.late:
+            self._add_triggers()
+
+    def _add_triggers(self) -> None:
+        """Try triggers of the late chains: all with each order, and one after the other on top of the best configuration."""
+        late = self.best.late
+        slow_choices = self.space.list_triggers(late)
+        has_room = self.trials.tries_left > 2 * _KEPT_TRIES
+        if has_room and slow_choices and not self.hopeless and self._try_orders(slow_choices):
+            return
+        for choice in (*slow_choices, *self.space.list_triggers(late, by_each_message=True)):
+            if self.best.late:
                 base = self.tried[self.best.changes][1]
-                self._try(replace(base, triggers=(*base.triggers, choice)))
+                others = tuple(each for each in base.triggers if each.activity != choice.activity)
+                self._try(replace(base, triggers=(*others, choice)))
 
     def _find_hopeless(self, changes: Changes) -> dict[str, Fraction]:
         """Return the floors that are above their chain's deadline with some changes."""
@@ -166,12 +177,16 @@ class _ProposalSearch:
         return False
 
     def _choose_triggers(self) -> tuple[TriggerChoice, ...]:
-        """Return the fewest triggers with which no chain's floor is above its deadline; empty where none do."""
-        choices = self.space.list_triggers(list(self.hopeless))
-        for count in range(1, len(choices) + 1):
-            triggers = tuple(choices[:count])
-            if not self._find_hopeless(self.space.list_changes(RunConfiguration(triggers=triggers))):
-                return triggers
+        """Return the fewest triggers with which no chain's floor is above its deadline; empty where none do.
+
+        Who works oftener than now takes more of its host: only where nothing else is short enough.
+        """
+        for by_each_message in (False, True):
+            choices = self.space.list_triggers(list(self.hopeless), by_each_message=by_each_message)
+            for count in range(1, len(choices) + 1):
+                triggers = tuple(choices[:count])
+                if not self._find_hopeless(self.space.list_changes(RunConfiguration(triggers=triggers))):
+                    return triggers
         return ()
 
     def _climb(self, list_next: Callable[[RunConfiguration], Iterable[RunConfiguration]], kept_tries: int = 0) -> None:

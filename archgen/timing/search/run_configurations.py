@@ -40,6 +40,8 @@ class TriggerChoice:
     activity: str
     input: str
     every: int
+    message_rate: Fraction
+    """Messages for each time that it works now."""
 
     def list_changes(self) -> Iterator[TriedChange]:
         """Yield what is to be written."""
@@ -50,7 +52,9 @@ class TriggerChoice:
     def describe(self) -> str:
         """Return it in words."""
         which = "each message" if self.every == 1 else f"one message in {self.every}"
-        return f"{self.activity} fired by {which} of its input {self.input}"
+        factor = int(self.message_rate / self.every)
+        oftener = f", {factor} times as often as now" if factor > 1 else ""
+        return f"{self.activity} fired by {which} of its input {self.input}{oftener}"
 
 
 @dataclass(frozen=True, slots=True)
@@ -180,17 +184,19 @@ class ConfigurationSpace:
         for choice in configuration.triggers:
             yield replace(configuration, triggers=tuple(each for each in configuration.triggers if each != choice))
 
-    def list_triggers(self, chain_ids: Sequence[str]) -> list[TriggerChoice]:
+    def list_triggers(self, chain_ids: Sequence[str], *, by_each_message: bool = False) -> list[TriggerChoice]:
         """Return the triggers that would spare chains the wait for a clock, what waits longest first.
 
-        The element is fired at least as often as it works now; what it reads must come at a sure rate, from one source.
+        The element is fired at least as often as it works now, but no oftener than it must or `by_each_message`;
+        what it reads must come at a sure rate, from one source.
         """
         choices: dict[TriggerChoice, Fraction] = {}
         for chain in (chain for chain in self._chains if chain.id in chain_ids):
             for source, reader in pairwise(chain.through):
                 choice = self._find_trigger(source, reader)
                 if choice is not None:
-                    choices[choice] = self._analysis.paces[reader].gap.value or Fraction(0)
+                    fastest = replace(choice, every=1) if by_each_message else choice
+                    choices[fastest] = self._analysis.paces[reader].gap.value or Fraction(0)
         return sorted(choices, key=lambda choice: -choices[choice])
 
     def _find_trigger(self, source: str, reader_id: str) -> TriggerChoice | None:
@@ -203,7 +209,8 @@ class ConfigurationSpace:
             is_sure = not self._activities[source].conditional and not is_selective_arc(system, arc)
             has_one_source = sum(other.input == arc.input for other in arcs) == 1
             if port and own_rate and rate and reader.behaviour == "periodic" and is_sure and has_one_source:
-                return TriggerChoice(reader_id, port.name, int(rate / own_rate)) if rate >= own_rate else None
+                every, message_rate = int(rate / own_rate), rate / own_rate
+                return TriggerChoice(reader_id, port.name, every, message_rate) if every else None
         return None
 
     def list_changes(self, configuration: RunConfiguration) -> Changes:

@@ -27,10 +27,11 @@ from archgen.timing.system.thread_pools import (
     find_crowded_pools,
     find_pool,
     find_serial_process,
+    find_unplaced_pools,
+    group_unplaced,
     name_lane,
 )
 from archgen.timing.system.timing_system import Activity, TimingSystem
-from archgen.timing.system.unplaced_pools import find_unplaced_pools, group_unplaced
 
 
 @dataclass(frozen=True, slots=True)

@@ -1,4 +1,4 @@
-"""What runs one after the other: the callbacks of a thread, or of a callback group; and the threads of each process."""
+"""What runs one after the other: the callbacks of a thread, or of a callback group; and the threads of each process, placed or not."""
 
 from __future__ import annotations
 
@@ -134,3 +134,23 @@ def find_joint_nodes(system: TimingSystem) -> Mapping[str, tuple[Activity, ...]]
         if activity.container is None and executor is not None and executor.threads == 1:
             members_by_node[activity.node].append(activity)
     return {node: tuple(members) for node, members in members_by_node.items() if len(members) > 1}
+
+
+def find_unplaced_pools(system: TimingSystem) -> dict[ThreadPool, list[Activity]]:
+    """Return the members of each process without a host that has fewer threads than there may be asked for."""
+    # Where `threads` is not written, there is one for each member, and none waits for another.
+    return {
+        pool: members
+        for pool, members in group_unplaced(system).items()
+        if (pool.threads == 1 and len(members) > 1) or (pool.threads != 1 and is_crowded(system, pool, members))
+    }
+
+
+def group_unplaced(system: TimingSystem) -> dict[ThreadPool, list[Activity]]:
+    """Return the activities without a host by the process that runs them."""
+    members_by_pool: dict[ThreadPool, list[Activity]] = defaultdict(list)
+    for activity in system.activities.values():
+        pool = find_pool(system, activity) if activity.host is None else None
+        if pool is not None:
+            members_by_pool[pool].append(activity)
+    return members_by_pool

@@ -6,8 +6,7 @@ from collections.abc import Mapping
 
 from archgen.frozen import dataclass, field
 from archgen.timing.search.chain_budgets import SharedBudget
-from archgen.views.agreement.interface_record import InterfaceRecord
-from archgen.views.agreement.signature_record import SignatureRecord
+from archgen.views.agreement.interface_record import InterfaceRecord, SignatureRecord
 from archgen.views.agreement.term_changes import AgreementChanges
 from archgen.views.graphs.element_boxes import join_owner_titles
 from archgen.views.lookup import Lookup

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 
 from archgen.frozen import dataclass
+from archgen.model.latest_result import remember_latest
 from archgen.model.partner_interfaces import PartnerPair, components_at_ends, find_all_interfaces
 from archgen.timing.system import activity_builder
 from archgen.views import inline_text
@@ -31,6 +32,7 @@ class PartnerExchange:
         return tuple(terms for terms in self.interfaces if terms.interface.pair[0] == giver)
 
 
+@remember_latest
 def gather_exchanges(lookup: Lookup) -> tuple[PartnerExchange, ...]:
     """Return the exchanges between all partners that have interfaces with shown components or nodes, as declared."""
     activity_names = activity_builder.name_activities(lookup.architecture)
@@ -141,7 +143,7 @@ def _carrier_cell(terms: InterfaceTerms) -> Inlines:
 
 def _list_chips(terms: InterfaceTerms) -> Iterator[Text]:
     for name in terms.open_names:
-        yield _make_chip(_shorten_name(name), "open")[0]
+        yield _make_chip(shorten_name(name), "open")[0]
     if terms.contradictions:
         yield Text(inline_text.count_noun(len(terms.contradictions), "contradiction"), status="error")
     if terms.late_chains:
@@ -159,21 +161,27 @@ def _list_point_rows(lookup: Lookup, exchange: PartnerExchange) -> Iterator[tupl
     both = inline_text.join_inlines(
         (inline_text.partner_link(lookup.architecture, partner) for partner in exchange.pair), " and "
     )
+    for chip, sentence, link in list_grave_points(exchange):
+        yield chip, inline_text.join_lines([sentence, link]), both
+    for name, interfaces in group_open_terms(exchange.interfaces).items():
+        links = inline_text.join_inlines((interface_link(terms),) for terms in interfaces)
+        point = inline_text.join_lines([inline_text.message_to_inlines(describe_open_term(name)), links])
+        yield _make_chip(shorten_name(name), "open"), point, _count_writers(lookup, interfaces)
+
+
+def list_grave_points(exchange: PartnerExchange) -> Iterator[tuple[Inlines, Inlines, Inlines]]:
+    """Yield a chip, the words and an interface of each contradiction and each late chain between two partners."""
     for status, word, sentences in (
         ("error", "contradiction", {s: t for t in exchange.interfaces for s in t.contradictions}),
         ("not proven", "late chain", {s: t for t in exchange.interfaces for s in t.late_chains}),
     ):
         for sentence, terms in sentences.items():
             # One chain may pass over several interfaces: it is late once.
-            point = inline_text.join_lines([inline_text.message_to_inlines(sentence), (interface_link(terms),)])
-            yield _make_chip(word, status), point, both  # type: ignore[arg-type]
-    for name, interfaces in _group_open_terms(exchange.interfaces).items():
-        links = inline_text.join_inlines((interface_link(terms),) for terms in interfaces)
-        point = inline_text.join_lines([inline_text.message_to_inlines(describe_open_term(name)), links])
-        yield _make_chip(_shorten_name(name), "open"), point, _count_writers(lookup, interfaces)
+            yield _make_chip(word, status), inline_text.message_to_inlines(sentence), (interface_link(terms),)  # type: ignore[arg-type]
 
 
-def _shorten_name(name: TermName) -> str:
+def shorten_name(name: TermName) -> str:
+    """Return the name of a term as it stands in a chip."""
     return "QoS" if name == QOS_OFFERED else name.words
 
 
@@ -181,7 +189,7 @@ def _make_chip(word: str, status: Status) -> Inlines:
     return (Text(word, status=status),)
 
 
-def _group_open_terms(interfaces: Iterable[InterfaceTerms]) -> Mapping[TermName, list[InterfaceTerms]]:
+def group_open_terms(interfaces: Iterable[InterfaceTerms]) -> Mapping[TermName, list[InterfaceTerms]]:
     """Return the open terms by name, that of most interfaces first."""
     grouped: dict[TermName, list[InterfaceTerms]] = {}
     for terms in interfaces:

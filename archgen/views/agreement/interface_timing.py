@@ -10,9 +10,8 @@ from archgen.frozen import NamedTuple, dataclass, replace
 from archgen.model.declared_timing import OutputTiming, Timing
 from archgen.model.node import Endpoint
 from archgen.model.partner_interfaces import PartnerInterface, list_givers
-from archgen.timing.analysis import ChainResult, EventPace
-from archgen.timing.chains.limit_states import LimitState, judge_upper_limit
-from archgen.timing.endpoint_paces import find_pace
+from archgen.timing.analysis import ChainResult, EventPace, find_pace
+from archgen.timing.chains.chain_verdicts import LimitState, judge_upper_limit
 from archgen.timing.figures.timing_values import TimingValue
 from archgen.timing.system import activity_builder
 from archgen.timing.system.message_sizes import MessageSize

@@ -239,12 +239,9 @@ def name_owner(edit: Edit, comparison: Comparison, partner_names: Mapping[str, s
 
 def find_group_owner(group_id: str, comparison: Comparison) -> str:
     """Return who owned a group before the change, or owns it if it is new; empty for nobody."""
-    versions = comparison.versions
-    common_id = group_id
-    if ("group", group_id) not in versions.elements_after:
-        common_id = comparison.matched_ids.common_id("group", group_id)
-    element = versions.elements_before.get(("group", common_id)) or versions.elements_after.get(("group", common_id))
-    return (element.owner if element else None) or ""
+    is_there = ("group", group_id) in comparison.versions.elements_after
+    common_id = group_id if is_there else comparison.matched_ids.common_id("group", group_id)
+    return comparison.versions.find_owner("group", common_id) or ""
 
 
 def _find_owner(change: Change, comparison: Comparison) -> str | None:
@@ -252,9 +249,6 @@ def _find_owner(change: Change, comparison: Comparison) -> str | None:
     if change.element_kind == "partner" or change.key == "owner":
         return None
     kind = "input" if change.element_kind == "connection" else change.element_kind
-    common_id = change.element_id
-    if change.kind == "removed":
-        common_id = comparison.matched_ids.common_id(kind, change.element_id)
-    versions = comparison.versions
-    element = versions.elements_before.get((kind, common_id)) or versions.elements_after.get((kind, common_id))
-    return element.owner if element else None
+    is_gone = change.kind == "removed"
+    common_id = comparison.matched_ids.common_id(kind, change.element_id) if is_gone else change.element_id
+    return comparison.versions.find_owner(kind, common_id)

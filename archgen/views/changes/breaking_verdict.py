@@ -237,11 +237,7 @@ def _describe_idle(comparison: Comparison, entry: AcceptedChange) -> str:
     key_note = f" with the key `{entry.key}`" if entry.key else ""
     sentence = f"note: accepted entry `{entry.element}`{key_note}{place_note} names no breaking change here"
     # Ids of both versions: an entry may name an element that was removed.
-    known_ids = {
-        element.own_id
-        for elements in (comparison.versions.elements_before, comparison.versions.elements_after)
-        for element in elements.values()
-    }
+    known_ids = {element.own_id for elements in comparison.versions.elements for element in elements.values()}
     if entry.element in known_ids:
         return sentence
     guess = did_you_mean(entry.element, known_ids)

@@ -179,6 +179,8 @@ def describe_comparison(
     other_edits = [
         note_source(edit, partner_names, broken_partners) for edit in edits if not is_shown_as_break(edit, comparison)
     ]
+    textual_edits = [edit for edit in other_edits if _is_textual_edit(edit, comparison)]
+    weighty_edits = [edit for edit in other_edits if not _is_textual_edit(edit, comparison)]
     repeated_findings = find_repeated_findings(comparison)
     caveat = " in what could be read" if any(reading_errors) else ""
     finding_groups = tuple(_group_findings(comparison, reading_errors, repeated_findings.keys()))
@@ -193,7 +195,7 @@ def describe_comparison(
         after=NamedVersion(new_name, reading_errors.after),
         headline=_write_headline(comparison, edits, verdict, finding_groups, caveat),
         counts=", ".join(count_phrases),
-        kind_counts=count_by_kind(edits),
+        kind_counts=kind_counts,
         finding_counts=tuple(_count_findings(finding_groups)),
         caveat=caveat,
         obstacle=breaking_verdict.describe_obstacle(comparison),
@@ -213,14 +215,8 @@ def describe_comparison(
         verdict=verdict,
         changes_heading="Other changes" if len(other_edits) < len(edits) else "Changes",
         change_groups=tuple(group_changes(other_edits, comparison, partner_names)),
-        weighty_groups=tuple(
-            group_changes(
-                [edit for edit in other_edits if not _is_textual_edit(edit, comparison)], comparison, partner_names
-            )
-        ),
-        textual_changes=tuple(
-            name_owner(edit, comparison, partner_names) for edit in other_edits if _is_textual_edit(edit, comparison)
-        ),
+        weighty_groups=tuple(group_changes(weighty_edits, comparison, partner_names)),
+        textual_changes=tuple(name_owner(edit, comparison, partner_names) for edit in textual_edits),
         boundary_lines=(
             *write_limit_lines(comparison),
             *write_boundary_lines(comparison, partner_names),

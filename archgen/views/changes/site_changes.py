@@ -12,11 +12,25 @@ from archgen.compare import Change, Comparison
 from archgen.compare.text_meaning import find_differences
 from archgen.frozen import dataclass, replace
 from archgen.views import inline_text
+from archgen.views.changes.boundary_lines import write_boundary_lines
 from archgen.views.changes.change_wording import CHANGE_SIGNS, choose_mark, text_runs
 from archgen.views.changes.comparison_document import ComparisonDocument
 from archgen.views.changes.comparison_outline import write_comparison_outline
+from archgen.views.changes.figure_lines import FigureLine
+from archgen.views.changes.named_elements import name_partners
 from archgen.views.picture_shapes import Box, Drawing, ElementChange, Graph
-from archgen.views.shapes import Block, Bullets, Column, Facts, Inlines, Page, Section, Table, Text, split_anchor
+from archgen.views.shapes import (
+    Block,
+    Bullets,
+    Column,
+    Facts,
+    Inlines,
+    Page,
+    Section,
+    Table,
+    Text,
+    split_anchor,
+)
 
 CHANGES_ANCHOR = "page:changes"
 _PAGE_KINDS = frozenset(
@@ -83,6 +97,11 @@ class SiteChanges:
         )
         own = (anchor for anchor, kind, _ in changed if kind == "group")
         return frozenset((*own, *(f"group:{name}" for name in (*names, *removed))))
+
+    def list_boundary_lines(self, partner_id: str) -> tuple[FigureLine, ...]:
+        """Return what changed at the interfaces of a partner, in the words of the comparison."""
+        own = [each for each in self.comparison.boundaries if partner_id in (*each.givers, *each.takers)]
+        return write_boundary_lines(replace(self.comparison, boundaries=tuple(own)), name_partners(self.comparison))
 
     @cached_property
     def kinds_in_pictures(self) -> Mapping[str, ElementChange]:

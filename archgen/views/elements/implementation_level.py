@@ -118,8 +118,13 @@ def _remap_facts(lookup: Lookup, node: Node) -> Inlines:
     port_names = {each.own_name: each.label for each in ends if each.own_name and each.program_name != each.name}
     port_names |= {each.evidence["name"].rule.partition(":=")[0]: each.label for each in ends if each.is_moved}
     others = {own_name: name for own_name, name in list_written_remaps(node).items() if own_name not in port_names}
+    known_names = {each.name for each in ends}
     return inline_text.join_inlines(
-        (Text(own_name, code=True), Text(" is "), Text(name, code=True))
+        (
+            Text(own_name, code=True),
+            Text(" is "),
+            inline_text.topic_link(name) if name in known_names else Text(name, code=True),
+        )
         for own_name, name in (port_names | others).items()
     )
 

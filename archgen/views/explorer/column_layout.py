@@ -11,6 +11,7 @@ from archgen.frozen import dataclass
 from archgen.model.flow_graph import FlowGraph, build_node_graph
 from archgen.model.graph_search import find_strong_components
 from archgen.views.graphs.drawn_level import list_flows
+from archgen.views.graphs.group_columns import spread_apart
 from archgen.views.lookup import Lookup
 
 NO_HOME = ""
@@ -240,7 +241,7 @@ def _align_heights(columns: Sequence[Sequence[str]], flows: FlowWeights) -> dict
     for _ in range(4):
         for column in columns:
             wishes = [_mean_height(neighbours[item], heights, heights[item]) * 0.5 for item in column]
-            heights |= dict(zip(column, spread_apart(wishes), strict=True))
+            heights |= dict(zip(column, spread_apart(wishes, [1.0] * len(wishes)), strict=True))
     return heights
 
 
@@ -248,20 +249,3 @@ def _mean_height(neighbours: Iterable[tuple[str, int]], heights: Mapping[str, fl
     pairs = list(neighbours)
     total = math.fsum(weight for _, weight in pairs)
     return math.fsum(heights[item] * weight for item, weight in pairs) / total if total else default
-
-
-def spread_apart(wishes: Sequence[float]) -> list[float]:
-    """Return heights at least one apart, in this order, that are as near to the wished ones as can be.
-
-    Neighbours that would overlap are moved together as a block (pool adjacent violators).
-    """
-    blocks: list[tuple[float, int]] = []
-    for index, wish in enumerate(wishes):
-        # Without the distance that it needs from the first item, so that blocks are plain means.
-        blocks.append((wish - index, 1))
-        while len(blocks) > 1 and blocks[-2][0] > blocks[-1][0]:
-            (upper, upper_size), (lower, lower_size) = blocks[-2:]
-            size = upper_size + lower_size
-            blocks[-2:] = [((upper * upper_size + lower * lower_size) / size, size)]
-    offsets = [offset for offset, size in blocks for _ in range(size)]
-    return [offset + index for index, offset in enumerate(offsets)]

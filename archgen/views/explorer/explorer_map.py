@@ -5,13 +5,14 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from functools import cached_property
 
+from archgen.cache.layout_memory import NO_MEMORY, LayoutMemory
 from archgen.frozen import dataclass
 from archgen.model.component import Component, Group
 from archgen.model.component_nesting import list_surrounding
 from archgen.model.deployment import Host
 from archgen.model.node import Node
 from archgen.timing.analysis import EventPace
-from archgen.views.explorer import element_keys, map_flows
+from archgen.views.explorer import element_keys, map_flows, map_timing
 from archgen.views.explorer.column_layout import NO_HOME, MapPlaces, Path, Place, find_places
 from archgen.views.explorer.element_keys import Key, list_composed_keys
 from archgen.views.explorer.map_shapes import (
@@ -25,6 +26,16 @@ from archgen.views.explorer.map_shapes import (
     shorten_description,
 )
 from archgen.views.graphs.element_boxes import join_owner_titles, type_lines, worst_severity
+from archgen.views.graphs.group_columns import (
+    FEWEST_CROSSINGS,
+    ColumnItem,
+    GroupColumns,
+    Lane,
+    align_columns,
+    arrange_groups,
+    count_least_crossings,
+)
+from archgen.views.graphs.group_graphs import weigh_group_flows
 from archgen.views.inline_text import count_noun
 from archgen.views.lookup import Lookup
 from archgen.views.search.search_entry import join_entry_parts
@@ -67,19 +78,21 @@ def make_composed_rows(
     )
 
 
-def make_explorer_map(lookup: Lookup) -> ExplorerMap:
-    """Make the tables of what is shown."""
-    maker = _MapMaker(lookup)
+def make_explorer_map(lookup: Lookup, memory: LayoutMemory = NO_MEMORY) -> ExplorerMap:
+    """Make the tables of what is shown; the columns of groups come from the memory of layouts where they are there."""
+    maker = _MapMaker(lookup, memory)
     return ExplorerMap(
         {
             "keys": tuple(maker.key_numbers),
             "names": tuple(maker.list_names()),
             "types": tuple((name, known.message or "") for name, known in lookup.architecture.types.items()),
             "groups": tuple(maker.group_row(group) for group in maker.groups),
+            "ways": tuple(maker.way_rows()),
             "hosts": tuple(maker.host_row(host) for host in maker.hosts),
             "components": tuple(maker.component_row(component) for component in maker.components),
             "nodes": tuple(maker.node_row(node) for node in maker.nodes),
             **map_flows.make_flow_tables(lookup, maker.component_numbers, maker.node_numbers, maker.shells),
+            **map_timing.make_timing_tables(lookup, maker.component_numbers, maker.node_numbers),
             "shells": maker.shell_rows(),
             "chains": tuple(maker.chain_rows()),
             "requirements": tuple(maker.requirement_rows()),
@@ -93,6 +106,7 @@ class _MapMaker:
     """Makes the rows of elements. Its look-ups are the positions of elements in their tables."""
 
     lookup: Lookup
+    memory: LayoutMemory
 
     @cached_property
     def groups(self) -> list[Group]:
@@ -175,6 +189,37 @@ class _MapMaker:
         )
 
     @cached_property
+    def arranged_groups(self) -> GroupColumns | None:
+        """The columns of the overview; None where so many lines would cross that they are no picture."""
+        names = [group.id for group in self.groups]
+        weights = weigh_group_flows(self.lookup)
+        pairs = {frozenset(ends) for ends in weights if ends[0] in self.group_numbers and ends[1] in self.group_numbers}
+        if count_least_crossings(len(names), len(pairs)) > FEWEST_CROSSINGS:
+            return None
+        return arrange_groups(names, weights, self.memory)
+
+    @cached_property
+    def group_places(self) -> Mapping[ColumnItem, Place]:
+        """The place of each group and lane, heights in steps of a box, where groups are in the columns of the overview."""
+        arranged = self.arranged_groups
+        if arranged is None:
+            return {
+                group.id: self.map_places.components[group.id,]
+                for group in self.groups
+                if (group.id,) in self.map_places.components
+            }
+        heights = align_columns(arranged, _measure_distance)
+        return {
+            item: (number, round(heights[item], 2)) for number, column in enumerate(arranged.columns) for item in column
+        }
+
+    def way_rows(self) -> Iterator[Row]:
+        """Yield the lines between groups with the places that they pass."""
+        for line in self.arranged_groups.lines if self.arranged_groups else ():
+            ends = (self.group_numbers[str(line[0])], self.group_numbers[str(line[-1])])
+            yield (*ends, tuple(self.group_places[lane] for lane in line[1:-1]))
+
+    @cached_property
     def progress_bits(self) -> Mapping[str, int]:
         """How far each component is, a bit for each of the steps of progress, the first one lowest."""
         return measure_steps(self.lookup, self.components)
@@ -208,7 +253,7 @@ class _MapMaker:
             group.title,
             join_owner_titles(self.lookup, group.owners),
             shorten_description(group.description),
-            self.map_places.components.get((group.id,), ()),
+            self.group_places.get(group.id, ()) if (group.id,) in self.map_places.components else (),
             self.map_places.nodes_by_group.get((group.id,), ()),
             list_places(self.lookup, group.at),
         )
@@ -323,6 +368,11 @@ class _MapMaker:
                     (kind, numbers[element_id], finding.effective_severity.value, finding.message.replace("`", ""))
                     for finding in findings
                 )
+
+
+def _measure_distance(one: ColumnItem, other: ColumnItem) -> float:
+    """Return how far apart two items of a column stand at least, in steps of a box."""
+    return (1.0, 0.5, 0.25)[isinstance(one, Lane) + isinstance(other, Lane)]
 
 
 def measure_steps(lookup: Lookup, components: Iterable[Component]) -> dict[str, int]:

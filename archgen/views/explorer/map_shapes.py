@@ -39,6 +39,7 @@ class ExplorerMap:
     | `names` | key, value, title: how people call a value |
     | `types` | name, message |
     | `groups` | anchor, id, title, owners, summary, place among components, place among nodes, written in |
+    | `ways` | group, group, places of the lane in each column between them: the lines between groups, none where they are too many |
     | `hosts` | anchor, id, title, line, summary, place, written in |
     | `components` | anchor, id, title, group, line, summary, keys, period, progress, severity, place, written in |
     | `shells` | anchor, id, title, group, shell around, components directly inside, line, summary, keys, severity, place, written in |
@@ -50,6 +51,8 @@ class ExplorerMap:
     | `flows` | style, input, outputs, and the medium where it is no ROS: between components |
     | `extra` | tail, head: what feeds a component of which no output is known yet |
     | `links` | tail, head, topic: between nodes |
+    | `activities` | id, node, components; wait, response (ns) and reason as the first of a way |
+    | `steps` | activity, activity, is it a call; link, wait, response (ns; null: unknown, in brackets: a part) and reason |
     | `chains` | anchor, id, title, status, words, components, nodes |
     | `requirements` | anchor, id, title, components |
     | `findings` | kind (0 component, 1 node, 2 shell), element, severity, message |

@@ -5,10 +5,11 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable, Mapping, Sequence
 
-from archgen.bringup.program_names import choose_own_name, find_common_message, group_endpoints
+from archgen.bringup.program_names import choose_own_names, find_common_message, group_endpoints
 from archgen.diagnostics.diagnostic import Diagnostic
 from archgen.model.architecture import Architecture
 from archgen.model.code_names import PYTHON_KEYWORDS
+from archgen.model.component import ComponentType, Input, Output
 from archgen.model.message_types import ConceptualType, full_message_name
 from archgen.model.node import Endpoint, Node, Qos
 from archgen.model.parameter import Parameter
@@ -33,12 +34,15 @@ def record_ports(
 ) -> tuple[dict[str, list[dict[str, object]]], list[Diagnostic]]:
     """Return what the nodes of one program use, by section, and what is left out.
 
-    Nodes of one program use the same ports. Where their topics differ, the program has a name of its own for the port,
-    which each node remaps.
+    Nodes of one program use the same ports; the program has a name of its own for each, which each node remaps.
     """
     sections: dict[str, list[dict[str, object]]] = {name: [] for name in PORT_SECTIONS.values()}
     findings: list[Diagnostic] = []
-    for (use, flow, key), port_endpoints in group_endpoints(nodes, endpoints).items():
+    groups = group_endpoints(nodes, endpoints)
+    own_names = choose_own_names(architecture, groups)
+    is_type = find_program_type(architecture, nodes) is not None
+    # By their names: a line that moves in the YAML moves nothing in the code.
+    for (use, flow, key), port_endpoints in sorted(groups.items()):
         if find_common_message(port_endpoints) is None:
             findings.append(_tell_unknown_message(port_endpoints[0], {each.message for each in port_endpoints}))
             continue
@@ -46,7 +50,8 @@ def record_ports(
             findings.append(_tell_bad_message(port_endpoints[0]))
             continue
         sections[PORT_SECTIONS[use, flow]].append(
-            _record_port(architecture, key, port_endpoints, is_shared=len(nodes) > 1)
+            _record_port(architecture, key, own_names[use, flow, key], port_endpoints, is_type=is_type)
+            | {"meaning": _write_meaning(architecture, port_endpoints, is_shared=len(nodes) > 1)}
         )
     return sections, findings
 
@@ -80,7 +85,7 @@ def _tell_bad_message(endpoint: Endpoint) -> Diagnostic:
 
 
 def _record_port(
-    architecture: Architecture, key: str, endpoints: Sequence[Endpoint], *, is_shared: bool
+    architecture: Architecture, key: str, own_name: str, endpoints: Sequence[Endpoint], *, is_type: bool
 ) -> dict[str, object]:
     first = endpoints[0]
     package, kind, name = (first.message or "//").split("/")
@@ -90,7 +95,7 @@ def _record_port(
     data_type = architecture.types.get(first.type or "")
     return {
         "key": key,
-        "topic": choose_own_name(key, endpoints, is_shared=is_shared),
+        "topic": own_name,
         "topics": {each.node: each.name or "" for each in endpoints},
         "port": first.port or "",
         "internal": first.internal,
@@ -101,10 +106,35 @@ def _record_port(
         "type": first.type or "",
         "description": (port.description if port else None) or (data_type.comment if data_type else None) or "",
         "sources": list(first.sources),
+        "size_bytes": None if data_type is None else _round_quantity(data_type.size),
         "envelope": record_envelope(architecture, endpoints),
         "qos": record_qos(first.qos),
-        "place": write_place(port.at if port else first.at),
+        "place": _place_port(architecture, port or first, is_type=is_type),
     }
+
+
+def _write_meaning(architecture: Architecture, port_endpoints: Sequence[Endpoint], *, is_shared: bool) -> str:
+    """Return what a port's name in code stands for: `base.guard.arms<arms.left.state:sensor_msgs/msg/JointState`.
+
+    A program that instances share has what their type says: each of them hears another one.
+    """
+    first = port_endpoints[0]
+    envelope = record_envelope(architecture, port_endpoints)
+    message = str(envelope["payload"]) if envelope else first.message or ""
+    component = architecture.components.get(first.component or "")
+    element = first.port or first.label
+    if is_shared and component and component.component_type and first.port:
+        element = f"{component.component_type}.{first.port.rpartition('.')[2]}"
+    source = "<" + ",".join(first.sources) if first.sources and not is_shared else ""
+    return f"{element}{source}:{message}".replace(" ", "_")
+
+
+def _place_port(architecture: Architecture, port: Input | Output | Endpoint, *, is_type: bool) -> str:
+    """Return where a port is written; of a program that is a component type, the path in it, whichever instance comes first."""
+    component = architecture.components.get(port.component or "")
+    if is_type and component and component.component_type and not isinstance(port, Endpoint):
+        return f"{component.component_type}.{port.id.rpartition('.')[2]}"
+    return write_place(port.at)
 
 
 def record_qos(qos: Qos) -> dict[str, object]:
@@ -177,6 +207,7 @@ def record_parameters(
     `is_given` says whether all nodes are given one, and `first_value` which the first is.
     """
     ros_1 = is_ros_1(architecture.distro)
+    component_type = find_program_type(architecture, nodes)
     values: dict[str, list[EffectiveParameter]] = {}
     for node in nodes:
         for name, parameter in find_effective_parameters(architecture, node).items():
@@ -184,7 +215,7 @@ def record_parameters(
                 values.setdefault(name, []).append(parameter)
     records: list[dict[str, object]] = []
     findings: list[Diagnostic] = []
-    for name, parameters in values.items():
+    for name, parameters in sorted(values.items()):
         ros_type = _find_ros_type(parameters)
         if ros_1 and any(_is_too_big(each.value) for each in parameters):
             ros_type = None
@@ -199,15 +230,29 @@ def record_parameters(
                 )
             )
             continue
-        records.append(_record_parameter(name, ros_type, parameters, is_common=len(parameters) == len(nodes)))
+        record = _record_parameter(name, ros_type, parameters, is_common=len(parameters) == len(nodes))
+        declared = component_type.parameters.get(name) if component_type else None
+        if declared:
+            # What instances are set to is told to each of them, so that a further one changes no program.
+            record["default"] = None if declared.value is None else convert_ros_value(declared.value, ros_type)
+            record["place"] = write_place(declared.at)
+        records.append(record)
     return records, findings
+
+
+def find_program_type(architecture: Architecture, nodes: Sequence[Node]) -> ComponentType | None:
+    """Return the component type that a program is: that of the one component of each of its nodes."""
+    components = [architecture.components[each] for node in nodes for each in node.implements]
+    first = components[0].component_type if components else None
+    is_one = len(components) == len(nodes) and all(each.component_type == first for each in components)
+    return architecture.component_types.get(components[0].type_name) if first and is_one else None
 
 
 def list_node_values(architecture: Architecture, node: Node) -> list[dict[str, object]]:
     """Return the values of a node that are known, as a parameter file has them: `name` and `value`."""
     listed: list[dict[str, object]] = []
     ros_1 = is_ros_1(architecture.distro)
-    for name, parameter in find_effective_parameters(architecture, node).items():
+    for name, parameter in sorted(find_effective_parameters(architecture, node).items()):
         ros_type = _find_ros_type((parameter,))
         if ros_type is None or not parameter.is_known or (ros_1 and _is_too_big(parameter.value)):
             continue

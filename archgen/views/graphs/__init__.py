@@ -2,14 +2,13 @@
 
 | id | kind | shows |
 |---|---|---|
-| `overview` | `overview` | the groups |
+| `overview` | `overview` | the groups; `overview_upright` for paper and narrow screens |
 | `components` | `components` | all groups with their components |
 | `groups/G` | `group` | a group with its neighbours |
 | `composed/G.C` | `composed` | a composed component, open, with what is inside |
 | `components/G.C` | `component` | a component with its ports |
 | `implementation/G.C` | `implementation` | a component's nodes and topics |
 | `ros` | `ros` | all nodes |
-| `hosts` | `hosts` | hosts, containers and links |
 | `frames` | `frames` | the coordinate frames, as a tree |
 | `views/V` | `view` | a view of the project |
 | `timing` | `timing` | all activities by their period, or those of the selection |
@@ -33,7 +32,7 @@ from archgen.views.graphs.host_graph import draw_hosts
 from archgen.views.graphs.implementation_graph import draw_implementation, draw_ros_graph
 from archgen.views.graphs.start_graph import draw_start
 from archgen.views.lookup import Lookup, make_lookup
-from archgen.views.picture_shapes import Graph
+from archgen.views.picture_shapes import Drawing, Graph
 from archgen.views.timing.timing_lookup import TimingLookup
 
 __all__ = [
@@ -47,10 +46,23 @@ __all__ = [
     "draw_overview",
     "draw_ros_graph",
     "draw_start",
+    "list_graphs",
     "make_all_graphs",
     "selection_graphs",
     "timing_graphs",
 ]
+
+
+_GRAPHS_BEHIND_SHEETS = {"overview": draw_overview, "hosts": draw_hosts}
+
+
+def list_graphs(lookup: Lookup, drawings: Iterable[Drawing]) -> Iterator[Graph]:
+    """Yield drawings as templates take them, which know boxes and arrows only: a graph for each that is one, or stands for one."""
+    for drawing in drawings:
+        if isinstance(drawing, Graph):
+            yield drawing
+        elif drawing.id in _GRAPHS_BEHIND_SHEETS:
+            yield fold_graph(_GRAPHS_BEHIND_SHEETS[drawing.id](lookup))
 
 
 MAX_COMPOSED_PICTURES = 300
@@ -82,6 +94,7 @@ def _iterate_graphs(
     shown_components = list(architecture.components.values())
     if selection is None:
         yield fold_graph(draw_overview(lookup))
+        yield fold_graph(draw_overview(lookup, "top-bottom"))
         yield fold_graph(draw_components(lookup, depth))
     else:
         shown_components = [component for component in shown_components if component.id in selection.components]
@@ -106,7 +119,6 @@ def _iterate_graphs(
         yield draw_implementation(lookup, each.id)
     if selection is None:
         yield draw_ros_graph(lookup)
-        yield draw_hosts(lookup)
         yield draw_frames(lookup)
         yield draw_start(lookup)
     else:

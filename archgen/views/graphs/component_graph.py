@@ -25,7 +25,7 @@ from archgen.views.graphs.drawn_level import (
     port_style,
     warn_of_outputs,
 )
-from archgen.views.graphs.graph_folding import add_legend_keys
+from archgen.views.graphs.graph_folding import add_legend_keys, merge_arrows
 from archgen.views.inline_text import count_noun
 from archgen.views.lookup import Lookup
 from archgen.views.picture_shapes import Arrow, Box, Graph
@@ -39,6 +39,8 @@ _MAX_GROUP_TYPES = 12
 """How many types the box of a whole group lists."""
 MAX_NEIGHBOURS = 40
 """With more neighbours they are folded by group."""
+_MAX_ARROWS = 80
+"""With more flows there is one arrow for each neighbour, and ports are counted."""
 
 
 def draw_component(lookup: Lookup, component_id: str) -> Graph:
@@ -50,14 +52,31 @@ def draw_component(lookup: Lookup, component_id: str) -> Graph:
         drawn = _fold_neighbours(lookup, drawn)
     neighbours = {box.id: box for box, _ in drawn}
     arrows = tuple(arrow for _, arrow in drawn)
+    subject = _subject_box(lookup, component)
+    is_merged = len(arrows) > _MAX_ARROWS
+    if is_merged:
+        ports = [
+            count_noun(len(each), noun)
+            for each, noun in ((component.inputs, "input"), (component.outputs, "output"))
+            if each
+        ]
+        subject = replace(subject, ports_in=(), ports_out=(), lines=(*subject.lines, " and ".join(ports)))
+        ends = {arrow.tail: arrow.tail for arrow in arrows} | {arrow.head: arrow.head for arrow in arrows}
+        arrows = tuple(
+            replace(arrow, label=count_noun(arrow.count, "flow"), tail_port=None, head_port=None)
+            for arrow in merge_arrows(list(arrows), ends)
+        )
     graph = Graph(
         f"components/{component_id}",
         component.title,
         "flow",
-        (_subject_box(lookup, component), *neighbours.values()),
+        (subject, *neighbours.values()),
         arrows,
         direction=component.layout.direction or lookup.architecture.layout.direction,
-        notes=("Neighbours are folded: a box for each group.",) if is_folded else (),
+        notes=(
+            *(("Neighbours are folded: a box for each group.",) if is_folded else ()),
+            *(("Ports are counted: the tables have them.",) if is_merged else ()),
+        ),
         alt=_describe_component(component, [box.title for box in neighbours.values()]),
         asked=sum(arrow.count for arrow in arrows),
         kind="component",

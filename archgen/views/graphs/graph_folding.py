@@ -65,7 +65,7 @@ def _fold_clusters(graph: Graph, cluster_ids: set[str], max_arrows: int) -> Grap
     boxes += [
         _folded_box(graph, cluster, flows_within[cluster.id]) for cluster in graph.clusters if cluster.id in cluster_ids
     ]
-    arrows = _merge_arrows(outer_arrows, {key: str(value) for key, value in drawn_ids.items()})
+    arrows = merge_arrows(outer_arrows, {key: str(value) for key, value in drawn_ids.items()})
     kinds = {cluster.emphasis == "neighbour" for cluster in graph.clusters if cluster.id in cluster_ids}
     folded_words = "Each group of neighbours" if kinds == {True} else "Each group"
     note = (
@@ -114,7 +114,7 @@ def _list_titles(titles: Sequence[str]) -> Iterator[str]:
         yield f"and {hidden} more"
 
 
-def _merge_arrows(arrows: list[Arrow], drawn_ids: dict[str, str]) -> tuple[Arrow, ...]:
+def merge_arrows(arrows: list[Arrow], drawn_ids: dict[str, str]) -> tuple[Arrow, ...]:
     """Merge arrows that now have the same ends."""
     bundles: dict[tuple[str, str, bool], list[Arrow]] = {}
     for arrow in arrows:
@@ -222,7 +222,9 @@ def _legend_keys(graph: Graph) -> list[str]:
     keys += [key for key in _ARROW_KEYS if key in arrow_kinds]
     keys += ["star"] if any(line.startswith("*") for arrow in graph.arrows for line in arrow.label.split("\n")) else []
     # Only these layouts draw the number of flows, as text and as width (`merged` in `style_graph`).
-    has_widths = graph.layout in {"two-step", "overview"} and any(arrow.count > 1 for arrow in graph.arrows)
+    if graph.layout == "overview":
+        return [*keys, "heads"] if graph.arrows else keys
+    has_widths = graph.layout == "two-step" and any(arrow.count > 1 for arrow in graph.arrows)
     return [*keys, "count"] if has_widths else keys
 
 

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections import Counter
+from collections.abc import Iterable, Mapping, Sequence
 from typing import Literal
 
 from archgen.diagnostics.common_wording import fit_lines
@@ -15,8 +16,9 @@ from archgen.views.graphs.drawn_level import ComponentFlow, DrawnLevel, merge_fl
 from archgen.views.graphs.graph_folding import add_legend_keys
 from archgen.views.inline_text import count_noun
 from archgen.views.lookup import Lookup
-from archgen.views.picture_shapes import Arrow, Box, Cluster, Graph
+from archgen.views.picture_shapes import UPRIGHT, Arrow, Box, Cluster, Graph
 
+Direction = Literal["left-right", "top-bottom"]
 MAX_FLOWS = 45
 """With more flows the neighbours are folded by group."""
 _MAX_TITLES = 6
@@ -123,23 +125,58 @@ def _group_titles(titles: dict[str, str], components: Iterable[str]) -> list[str
     return list(dict.fromkeys(titles[each.split(".", 1)[0]] for each in components))
 
 
-def draw_overview(lookup: Lookup) -> Graph:
-    """Draw the groups, with one arrow for all that flows from one to another."""
+def draw_overview(lookup: Lookup, direction: Direction | None = None) -> Graph:
+    """Draw the groups with a square for each component in the hue of its partner; flows are counted by their ends.
+
+    With a direction it is the picture for paper and narrow screens (`top-bottom`), with an id of its own.
+    """
     architecture = lookup.architecture
     between = _flows_between_groups(lookup)
-    arrows = _colour_by_source(lookup, merge_flows(between, _groups_of_flow, labels=False, by_style=False))
+    arrows = merge_flows(between, _groups_of_flow, labels=False, by_style=False)
+    hues = choose_partner_hues(lookup)
+    partners = architecture.partners
     graph = Graph(
-        "overview",
+        f"overview{UPRIGHT if direction else ''}",
         f"{architecture.project.title}: groups",
         "overview",
-        tuple(element_boxes.group_box(lookup, group) for group in architecture.groups),
+        tuple(_draw_closed_group(lookup, group, hues) for group in architecture.groups),
         arrows,
-        direction=architecture.layout.direction,
+        direction=direction or architecture.layout.direction,
+        legend_colours=tuple(
+            (hue, partners[owner].title if owner in partners else owner) for owner, hue in hues.items()
+        ),
         alt=_describe_flows(lookup, f"{count_noun(len(architecture.groups), 'group')} of components", arrows),
         asked=len(between),
         kind="overview",
     )
     return add_legend_keys(graph)
+
+
+_HUES = 10
+
+
+def choose_partner_hues(lookup: Lookup) -> dict[str, int]:
+    """Return the palette index of each owner of components, those with most first as far as there are hues."""
+    counts = Counter(each.owners[0] for each in lookup.architecture.components.values() if each.owners)
+    largest = [owner for owner, _ in counts.most_common(_HUES)]
+    order = [*(owner for owner in lookup.architecture.partners if owner in largest), *largest]
+    # The first hue is the grey of what belongs to nobody.
+    return {owner: (at + 1) % _HUES for at, owner in enumerate(dict.fromkeys(order))}
+
+
+def _draw_closed_group(lookup: Lookup, group_id: str, hues: Mapping[str, int]) -> Box:
+    """Return a group with a square for each of its components, by partner, the one with most first."""
+    box = element_boxes.group_box(lookup, group_id)
+    architecture = lookup.architecture
+    members = list(architecture.groups[group_id].components.values())
+    owners = Counter(member.owners[0] if member.owners else "" for member in members)
+    title = next((element_boxes.join_owner_titles(lookup, (owner,)) for owner, _ in owners.most_common() if owner), "")
+    others = len(owners - Counter([""])) - 1
+    words = [f"{title} and {others} more" if others > 0 else title, f"{len(members)}"]
+    squares = Counter[int | None]()
+    for owner, count in owners.most_common():
+        squares[hues.get(owner)] += count
+    return replace(box, lines=(" · ".join(filter(None, words)),), colour=None, members=tuple(squares.items()))
 
 
 def draw_components(lookup: Lookup, depth: int = 0) -> Graph:
@@ -214,6 +251,11 @@ def _flows_between_groups(lookup: Lookup) -> list[ComponentFlow]:
             # By identity of the connection, and by source: one connection may take from several groups.
             flow_by_source.setdefault((id(flow.connection), _group_of(flow.tail)), flow)
     return list(flow_by_source.values())
+
+
+def weigh_group_flows(lookup: Lookup) -> dict[tuple[str, str], int]:
+    """Count what flows from one group to another, as the overview does."""
+    return dict(Counter(map(_groups_of_flow, _flows_between_groups(lookup))))
 
 
 def _group_of(component_id: str) -> str:

@@ -19,6 +19,8 @@ _MIN_STARRED = 3
 """From this many topics on, if all are taken, an asterisk stands for them."""
 _MAX_LISTED_TOPICS = 8
 """How many topics the asterisk's box lists."""
+_MAX_TOPICS = 60
+"""Of more topics those that the same nodes use are one box."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -39,6 +41,8 @@ def draw_implementation(lookup: Lookup, component_id: str) -> Graph:
     # A node may use a topic at several endpoints: still one arrow.
     topic_arrows = list(dict.fromkeys(_list_topic_arrows(lookup, subject_ids)))
     star_of_topic = _find_stars(lookup, topic_arrows)
+    if len({end.topic for end in topic_arrows} - star_of_topic.keys()) > _MAX_TOPICS:
+        star_of_topic = _bundle_topics(topic_arrows)
     drawn_arrows = [replace(end, topic=star_of_topic.get(end.topic, end.topic)) for end in topic_arrows]
     arrows = tuple(_draw_arrow(end) for end in dict.fromkeys(drawn_arrows))
     topics = {box.id: box for box in _draw_topics(lookup, topic_arrows, star_of_topic, subject_ids)}
@@ -59,15 +63,15 @@ def draw_implementation(lookup: Lookup, component_id: str) -> Graph:
         asked=len(arrows),
         kind="implementation",
     )
-    return add_legend_keys(graph, *(["star"] if star_of_topic else []))
+    return add_legend_keys(graph, *(["star"] if any(star[0] == "*" for star in star_of_topic.values()) else []))
 
 
 def _list_topic_arrows(lookup: Lookup, subject_ids: set[str]) -> Iterator[_TopicArrow]:
     endpoints = [each for subject in sorted(subject_ids) for each in lookup.endpoints_of.get(subject, ())]
-    carriers = dict(lookup.architecture.list_carriers())
     for key in dict.fromkeys(key_of_carrier(endpoint) for endpoint in endpoints):
-        if key in carriers:
-            yield from _arrows_at_topic(key, carriers[key], subject_ids)
+        topic = lookup.architecture.find_carrier(key)
+        if topic is not None:
+            yield from _arrows_at_topic(key, topic, subject_ids)
 
 
 def _arrows_at_topic(key: str, topic: Topic, subject_ids: set[str]) -> Iterator[_TopicArrow]:
@@ -118,6 +122,17 @@ def _find_stars(lookup: Lookup, topic_arrows: list[_TopicArrow]) -> dict[str, st
     return star_of_topic
 
 
+def _bundle_topics(topic_arrows: list[_TopicArrow]) -> dict[str, str]:
+    """Map each topic that has the same arrows as others to the first one of them, with a sign before it."""
+    arrows_of_topic: dict[str, set[_TopicArrow]] = {}
+    for end in topic_arrows:
+        arrows_of_topic.setdefault(end.topic, set()).add(replace(end, topic=""))
+    bundles: dict[frozenset[_TopicArrow], list[str]] = {}
+    for topic, ends in arrows_of_topic.items():
+        bundles.setdefault(frozenset(ends), []).append(topic)
+    return {topic: f"+ {names[0]}" for names in bundles.values() if len(names) >= _MIN_STARRED for topic in names}
+
+
 def _is_ros_data(end: _TopicArrow) -> bool:
     return end.style == "data" and not end.medium
 
@@ -125,20 +140,20 @@ def _is_ros_data(end: _TopicArrow) -> bool:
 def _draw_topics(
     lookup: Lookup, topic_arrows: list[_TopicArrow], star_of_topic: dict[str, str], subject_ids: set[str]
 ) -> Iterator[Box]:
-    carriers = dict(lookup.architecture.list_carriers())
     for name in dict.fromkeys(end.topic for end in topic_arrows):
-        topic = carriers[name]
-        if name not in star_of_topic:
+        topic = lookup.architecture.find_carrier(name)
+        if topic is not None and name not in star_of_topic:
             own_endpoints = [each for each in (*topic.writers, *topic.readers) if each.node in subject_ids]
             yield replace(element_boxes.topic_box(topic, own_endpoints), id=f"topic {name}")
     for star in dict.fromkeys(star_of_topic.values()):
         names = [name for name, stands in star_of_topic.items() if stands == star]
+        is_whole, first = star[0] == "*", lookup.architecture.find_carrier(names[0])
         yield Box(
             f"topic {star}",
-            f"* all topics of {star[2:]}",
+            f"* all topics of {star[2:]}" if is_whole else count_noun(len(names), first.flow if first else "topic"),
             tuple(fit_lines(names, _MAX_LISTED_TOPICS)),
             style="topic",
-            ref=f"node:{star[2:]}",
+            ref=f"node:{star[2:]}" if is_whole else None,
             tooltip="\n".join(names),
         )
 

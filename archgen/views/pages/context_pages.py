@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Callable, Iterable, Iterator
 
+from archgen.diagnostics.natural_order import order_naturally
 from archgen.model.component import Component, Input, Output
 from archgen.model.component_nesting import find_component
 from archgen.model.message_types import ConceptualType, flow_of
@@ -45,7 +46,7 @@ _FLOW_TITLES = {"topic": "Topic", "service": "Service", "action": "Action"}
 
 def make_context_pages(lookup: Lookup, keep_drawn: FigureFilter) -> Iterator[Page]:
     """Make a page for each type and use case."""
-    for conceptual_type in sorted(type_tables.shown_types(lookup), key=lambda each: each.name.casefold()):
+    for conceptual_type in sorted(type_tables.shown_types(lookup), key=lambda each: order_naturally(each.name)):
         yield _type_page(lookup, conceptual_type)
     for name in lookup.architecture.use_cases:
         yield _use_case_page(lookup, name, keep_drawn)
@@ -81,7 +82,7 @@ def shown_topics(lookup: Lookup) -> list[Topic]:
 def _sort_shown(lookup: Lookup, carriers: Iterable[Topic]) -> list[Topic]:
     return [
         topic
-        for topic in sorted(carriers, key=lambda each: (_FLOW_ORDER[each.flow], each.name))
+        for topic in sorted(carriers, key=lambda each: (_FLOW_ORDER[each.flow], order_naturally(each.name)))
         if any(lookup.scope.shows_node(endpoint.node) for endpoint in (*topic.writers, *topic.readers))
     ]
 
@@ -275,10 +276,10 @@ def _use_case_page(lookup: Lookup, use_case_id: str, keep_drawn: FigureFilter) -
     use_case = lookup.architecture.use_cases[use_case_id]
     serving_requirements = [r for r in lookup.architecture.requirements.values() if use_case_id in r.use_cases]
     table = requirement_tables.make_requirement_table(lookup, serving_requirements)
-    blocks: list[Block] = [Paragraph(inline_text.to_inlines(use_case.title))]
-    blocks += [Facts(facts)] if (facts := tuple(list_annotation_facts(lookup, use_case))) else []
+    blocks: list[Block] = [Facts(facts)] if (facts := tuple(list_annotation_facts(lookup, use_case))) else []
     blocks += [Markdown(use_case.description)] if use_case.description else []
     blocks += keep_drawn(make_sequence_blocks(lookup, use_case))
     blocks += [table] if table else []
     crumb = ("Requirements and use cases", "page:requirements")
-    return make_page(Section(f"use_case:{use_case_id}", use_case_id, tuple(blocks)), "use_cases", crumb, "Use case")
+    title = use_case_id if use_case.title == use_case_id else f"{use_case_id} {use_case.title}"
+    return make_page(Section(f"use_case:{use_case_id}", title, tuple(blocks)), "use_cases", crumb, "Use case")

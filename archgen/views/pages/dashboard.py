@@ -12,7 +12,6 @@ from archgen.model.project_history import History, HistoryPoint
 from archgen.views import element_references, inline_text, requirement_servers
 from archgen.views.inline_text import count_noun
 from archgen.views.lookup import Lookup
-from archgen.views.pages import page_marks
 from archgen.views.pages.report_outline import DocumentEdition
 from archgen.views.shapes import (
     Bullets,
@@ -29,11 +28,15 @@ from archgen.views.shapes import (
 )
 from archgen.views.tables import finding_tables, requirement_tables, statistics_tables
 from archgen.views.tables.statistics_tables import PROGRESS_STEPS
-from archgen.views.timing import chain_status, timing_tables, value_format
+from archgen.views.timing import chain_status, timing_tables, timing_verdicts, value_format
 
 _MAX_CHAINS = 8
 _MAX_POINTS = 4
-_MAX_PARTNERS = 10
+_MANY_POINTS = 50
+"""More points than these are told by how many they are: one less is shown."""
+_MAX_PARTNERS = 8
+_FIRST_PARTNERS = 6
+"""The partners that are shown where there are more than `_MAX_PARTNERS`."""
 _MAX_CELLS = 80
 """More requirements than these are one bar."""
 _MAX_CHANGES = 5
@@ -53,7 +56,7 @@ def make_dashboard(lookup: Lookup, edition: DocumentEdition) -> Dashboard:
 
 def _list_figures(lookup: Lookup, edition: DocumentEdition) -> Iterator[KeyFigure]:
     """Yield the figures, each with the reason why it is not better."""
-    chains = _chains_without_finding(lookup)
+    chains = timing_verdicts.list_silent_chains(lookup)
     parts = [*phrase_severity_counts(lookup.findings), *([count_noun(len(chains), "chain")] if chains else [])]
     severities = {finding.severity for finding in lookup.findings}
     worst = "missed" if "error" in severities else "warning" if "warning" in severities else "open" if parts else "met"
@@ -117,11 +120,6 @@ def _host_figure(lookup: Lookup) -> KeyFigure:
     return KeyFigure("Hosts proven in time", str(proven_count), str(len(hosts)), _make_note(worst, note), "page:hosts")
 
 
-def _chains_without_finding(lookup: Lookup) -> list[str]:
-    """Return the ids of chains that are not shown to meet their deadline, and that no finding is about."""
-    return [result.id for result in page_marks.list_troubled_chains(lookup) if result.id not in lookup.findings_of]
-
-
 def _chain_card(lookup: Lookup) -> DashboardCard | None:
     if not lookup.timing or not lookup.timing.chains:
         return None
@@ -166,19 +164,20 @@ def _point_card(lookup: Lookup) -> DashboardCard | None:
     if not points:
         return None  # the figure above says so
     link = Text(f"All {len(points)}, by owner and rule", ref="page:findings")
-    return DashboardCard("Open points", (Bullets(tuple(points[:_MAX_POINTS])),), 4, "", link, "points")
+    shown_count = _MAX_POINTS if len(points) <= _MANY_POINTS else _MAX_POINTS - 1
+    return DashboardCard("Open points", (Bullets(tuple(points[:shown_count])),), 4, "", link, "points")
 
 
 def make_chain_points(lookup: Lookup) -> list[Inlines]:
     """Return a point for each chain that is not shown to meet its deadline, and that no finding is about."""
-    silent_ids = set(_chains_without_finding(lookup))
     points: list[Inlines] = []
-    for result in page_marks.list_troubled_chains(lookup) if lookup.timing else ():
-        if result.id in silent_ids and lookup.timing:
-            title = Text(lookup.architecture.chains[result.id].title, ref=f"chain:{result.id}", line_break=True)
+    for result in timing_verdicts.list_silent_chains(lookup) if lookup.timing else ():
+        if lookup.timing:
+            chain = lookup.architecture.chains[result.id]
+            title = Text(chain.title, ref=f"chain:{result.id}", line_break=True)
             missing = value_format.describe_missing(result.bound, lookup.timing.analysis, 3)
             missing_line = Text(missing, muted=True, line_break=True)
-            partners = element_references.answering_cell(lookup, result.id, lookup.architecture.chains[result.id].at)
+            partners = element_references.answering_cell(lookup, result.id, chain.at)
             chip = (*chain_status.chain_chip(result), Text(" "), *partners)
             points.append((*chip, title, *([missing_line] if missing else [])))
     return points
@@ -225,7 +224,8 @@ def _progress_card(lookup: Lookup) -> DashboardCard | None:
         Column("Components", 1, "right"),
         *(Column(step.capitalize(), 1, "right") for step in PROGRESS_STEPS),
     )
-    rows = tuple(_progress_row(lookup, row) for row in partner_rows[:_MAX_PARTNERS])
+    shown_count = _MAX_PARTNERS if len(partner_rows) <= _MAX_PARTNERS else _FIRST_PARTNERS
+    rows = tuple(_progress_row(lookup, row) for row in partner_rows[:shown_count])
     hidden_count = len(partner_rows) - len(rows)
     table = Table("table:partner_progress", "Progress by partner, the least complete first", columns, rows)
     link = Text(f"{hidden_count} more, and by group" if hidden_count else "By group", ref="page:progress")

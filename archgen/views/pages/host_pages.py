@@ -35,6 +35,7 @@ def _host_page(lookup: Lookup, host: Host, keep_drawn: FigureFilter) -> Page:
     order = ", ".join(filter(None, (host.scheduling, timing_words.format_core_orders(host))))
     facts = [
         ("Cores", inline_text.count_to_inlines(host.cores)),
+        ("Address", inline_text.to_inlines(host.address or "")),
         ("Scheduling", inline_text.to_inlines(order) if order else ()),
         ("Environment", inline_text.join_inlines((Text(f"{each[0]}={each[1]}"),) for each in host.environment.items())),
         ("Tags", inline_text.to_inlines(", ".join(host.tags)) if host.tags else ()),

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator
 from typing import TypeVar
 
+from archgen.diagnostics.natural_order import order_naturally
 from archgen.frozen import replace
 from archgen.model.component import Output
 from archgen.model.known_interfaces import Interface, InterfaceField
@@ -74,7 +75,7 @@ class MessagePages:
                 inline_text.join_inlines(inline_text.type_link(each.name) for each in self._types_of(message)),
                 self._topic_cell(message),
             )
-            for message in sorted(self._users)
+            for message in sorted(self._users, key=order_naturally)
         )
         columns = make_columns(
             ("Name", 1.9),
@@ -89,7 +90,7 @@ class MessagePages:
 
     def make_pages(self) -> Iterator[Page]:
         """Make a page for each message, by name."""
-        for message in sorted(self._users):
+        for message in sorted(self._users, key=order_naturally):
             package, kind, name = message.split("/")
             blocks = (
                 *self._make_fact_blocks(message),

@@ -7,10 +7,9 @@ from typing import Literal
 
 from archgen.diagnostics.diagnostic import Diagnostic
 from archgen.frozen import replace
-from archgen.timing.analysis import ChainResult
 from archgen.views.lookup import Lookup
 from archgen.views.shapes import Page
-from archgen.views.timing import chain_status
+from archgen.views.timing import chain_status, timing_verdicts
 
 Mark = Literal["open", "missed", "error"]
 _RANKS: Mapping[Mark, int] = {"open": 0, "missed": 1, "error": 2}
@@ -44,7 +43,7 @@ def _list_marks(lookup: Lookup) -> Iterator[tuple[str, Mark]]:
         yield from ((f"group:{group}", mark) for group in _groups_of(lookup, element_id))
         if element_id in architecture.requirements:
             yield "page:requirements", mark
-    for result in list_troubled_chains(lookup):
+    for result in timing_verdicts.list_troubled_chains(lookup):
         mark = "missed" if result.verdict == "missed" else "open"
         yield f"chain:{result.id}", mark
         yield "page:chains", mark
@@ -64,15 +63,6 @@ def _list_marks(lookup: Lookup) -> Iterator[tuple[str, Mark]]:
 
 def _judge_findings(findings: Sequence[Diagnostic]) -> Mark:
     return "error" if any(finding.severity == "error" for finding in findings) else "open"
-
-
-def list_troubled_chains(lookup: Lookup) -> list[ChainResult]:
-    """Return the chains that are not shown to meet their deadline, the worst first."""
-    return [
-        result
-        for result in (lookup.timing.chains if lookup.timing else ())
-        if result.verdict != "met" and not chain_status.lacks_only_deadline(result)
-    ]
 
 
 def _groups_of(lookup: Lookup, element_id: str) -> list[str]:

@@ -3,16 +3,16 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
+from typing import TYPE_CHECKING
 
 from archgen.model.architecture import Partner
 from archgen.model.partner_interfaces import PartnerPair
 from archgen.views import inline_text
 from archgen.views.agreement import exchange_tables
 from archgen.views.agreement.exchange_tables import PartnerExchange, gather_exchanges, pair_title
-from archgen.views.agreement.interface_record import InterfaceRecord
+from archgen.views.agreement.interface_record import InterfaceRecord, SignedTag, write_signature_table
 from archgen.views.agreement.interface_sections import SectionWriter
 from archgen.views.agreement.interface_terms import InterfaceTerms
-from archgen.views.agreement.signature_record import SignedTag, write_signature_table
 from archgen.views.elements.annotation_facts import list_annotation_facts
 from archgen.views.elements.functional_level import make_component_table
 from archgen.views.graphs.element_boxes import join_owner_titles
@@ -20,6 +20,7 @@ from archgen.views.lookup import Lookup
 from archgen.views.matrix_shapes import Matrix
 from archgen.views.pages.context_pages import HOME_CRUMB, FigureFilter, make_node_table, make_page, make_page_slug
 from archgen.views.pages.matrix_pages import make_partner_matrix
+from archgen.views.pages.reliance_pages import link_reliance_pages, make_reliance_pages
 from archgen.views.shapes import (
     Block,
     Dashboard,
@@ -46,13 +47,20 @@ _PROMISE_NOTE = (
     "promises it."
 )
 
+if TYPE_CHECKING:  # a site that is compared with nothing loads no comparison
+    from archgen.compare import Comparison
+
 
 def make_partner_pages(
-    lookup: Lookup, keep_drawn: FigureFilter, signed_tags: Mapping[PartnerPair, tuple[SignedTag, ...]] | None = None
+    lookup: Lookup,
+    keep_drawn: FigureFilter,
+    signed_tags: Mapping[PartnerPair, tuple[SignedTag, ...]] | None = None,
+    comparison: Comparison | None = None,
 ) -> Iterator[Page]:
-    """Make the page of each partner; where partners give each other something, also who owes whom, pairs, interfaces.
+    """Make the page of each partner, with what he has to do and what rests on him; where partners give each other
+    something, also who owes whom, pairs, interfaces.
 
-    `signed_tags` record what was signed, newest first.
+    `signed_tags` record what was signed, newest first; `comparison` is with an earlier version.
     """
     exchanges = gather_exchanges(lookup)
     if exchanges:
@@ -60,6 +68,7 @@ def make_partner_pages(
     for partner in lookup.architecture.partners.values():
         own_exchanges = [exchange for exchange in exchanges if partner.id in exchange.pair]
         yield _partner_page(lookup, partner, own_exchanges, keep_drawn)
+    yield from make_reliance_pages(lookup, exchanges, comparison)
     has_interface_pages = sum(len(exchange.interfaces) for exchange in exchanges) <= MAX_INTERFACE_PAGES
     for exchange in exchanges:
         tags = (signed_tags or {}).get(exchange.pair, ())
@@ -250,6 +259,8 @@ def _partner_page(
     contact = (("Contact", inline_text.to_inlines(partner.contact)),) if partner.contact else ()
     if facts := (*contact, *list_annotation_facts(lookup, partner)):
         blocks.append(Facts(facts))
+    if any(partner.id in component.owners for component in lookup.architecture.components.values()):
+        blocks += link_reliance_pages(lookup, partner.id)
     if exchanges:
         blocks.append(_exchange_table(lookup, partner, exchanges))
     owned_components = [

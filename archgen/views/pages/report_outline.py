@@ -5,16 +5,18 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from typing import TYPE_CHECKING, Literal
 
+from archgen.conformance.seen_record import SeenRobot
 from archgen.frozen import dataclass, field, replace
 from archgen.model.document_chapters import GENERATED_CHAPTERS, Chapter
 from archgen.model.partner_interfaces import PartnerPair
 from archgen.model.project_history import History
 from archgen.model.report_settings import ReportSettings
 from archgen.views import inline_text
-from archgen.views.agreement.signature_record import SignedTag
+from archgen.views.agreement.interface_record import SignedTag
 from archgen.views.lookup import Lookup
 from archgen.views.pages import timing_chapter, variant_chapter
 from archgen.views.pages.component_pages import ReportSections
+from archgen.views.pages.partner_spreads import make_partner_chapter
 from archgen.views.pages.timing_chapter import make_figures
 from archgen.views.pages.variant_chapter import VariantDifference
 from archgen.views.picture_shapes import Drawing, GraphKind
@@ -34,8 +36,12 @@ from archgen.views.tables import (
 if TYPE_CHECKING:
     from archgen.views.changes.site_changes import SiteChanges
 
+_MAX_PARTNER_LINES = 8
+"""More partners stand one behind the other."""
+
 DetailLevel = Literal["functional", "implementation"]
 RosPlace = Literal["annex", "inline"]
+ReportDocument = Literal["deliverable", "data-sheets", "workbook", "full"]
 
 
 @dataclass(frozen=True, slots=True)
@@ -65,15 +71,20 @@ class DocumentEdition:
     """What changed since an earlier version, where the site is to show it."""
     variants: Mapping[str, VariantDifference] = field(default_factory=dict)
     """What is different in each variant of the project, by its id."""
+    document: ReportDocument = "full"
+    """Which of the report's documents it is."""
     signed_tags: Mapping[PartnerPair, tuple[SignedTag, ...]] = field(default_factory=dict)
     """The tags that record signatures of two partners, newest first."""
+    seen_robots: tuple[SeenRobot, ...] = ()
+    """What the project keeps of comparisons with robots."""
+    unread_record: str = ""
+    """Why that could not be read."""
 
 
 def make_report(lookup: Lookup, edition: DocumentEdition) -> Outline:
     """Make the outline of the report; appendices move to the end, else the project's order is kept."""
     architecture = lookup.architecture
-    chapter_maker = _ChapterMaker(lookup, edition)
-    sections = [section for name in edition.chapter_names for section in chapter_maker.make_chapter(name)]
+    sections = [section for name in edition.chapter_names for section in make_chapter(lookup, edition, name)]
     return Outline(
         title=architecture.project.title,
         subtitle="Software architecture",
@@ -84,22 +95,32 @@ def make_report(lookup: Lookup, edition: DocumentEdition) -> Outline:
     )
 
 
+def make_chapter(lookup: Lookup, edition: DocumentEdition, name: str) -> Sequence[Section]:
+    """Return the sections of a chapter: several for `groups`, none where there is nothing to say."""
+    if make_sections := _GENERATED_SECTIONS.get(name):
+        return make_sections(_ChapterMaker(lookup, edition))
+    chapter = edition.project_chapters.get(name)
+    if chapter is None:
+        return ()
+    title, text = split_title(chapter)
+    return (Section(f"chapter:{chapter.path}", title, (Markdown(text, chapter.folder),), page_break=True),)
+
+
 def make_document_facts(lookup: Lookup, edition: DocumentEdition) -> Iterator[tuple[str, Inlines]]:
     """Yield the lines of the title page: version, revision, ROS distribution, partners."""
     project = lookup.architecture.project
     if project.version:
         yield "Version", inline_text.to_inlines(project.version)
+    if project.license:
+        yield "License", inline_text.to_inlines(project.license)
     if edition.revision:
         yield "Revision", inline_text.to_inlines(edition.revision)
     if lookup.architecture.distro:
         yield "ROS distribution", inline_text.to_inlines(lookup.architecture.distro)
     if lookup.architecture.partners:
-        yield (
-            "Partners",
-            inline_text.join_lines(
-                inline_text.partner_link(lookup.architecture, name) for name in lookup.architecture.partners
-            ),
-        )
+        partners = [inline_text.partner_link(lookup.architecture, name) for name in lookup.architecture.partners]
+        join = inline_text.join_lines if len(partners) <= _MAX_PARTNER_LINES else inline_text.join_inlines
+        yield "Partners", join(partners)
 
 
 def make_notices(lookup: Lookup, edition: DocumentEdition) -> tuple[Paragraph, ...]:
@@ -125,18 +146,6 @@ class _ChapterMaker:
     lookup: Lookup
     edition: DocumentEdition
 
-    def make_chapter(self, name: str) -> Sequence[Section]:
-        """Return the sections of a chapter: several for `groups`, none where there is nothing to say."""
-        make_sections = _GENERATED_SECTIONS.get(name)
-        if make_sections:
-            return make_sections(self)
-        chapter = self.edition.project_chapters.get(name)
-        return (self._project_chapter(chapter),) if chapter else ()
-
-    def _project_chapter(self, chapter: Chapter) -> Section:
-        title, text = split_title(chapter)
-        return Section(f"chapter:{chapter.path}", title, (Markdown(text, chapter.folder),), page_break=True)
-
     def make_overview(self) -> list[Section]:
         """Make the overview: what the project says of itself, and its pictures."""
         project = self.lookup.architecture.project
@@ -144,6 +153,11 @@ class _ChapterMaker:
         blocks += make_figures(self.edition.drawings, "overview", "components")
         # Anchors are the same as the site's, so that references in shared blocks work in both.
         return [Section("page:index", "Overview", tuple(blocks), page_break=True)] if blocks else []
+
+    def make_between_partners(self) -> list[Section]:
+        """Make the chapter of what partners give each other; folded where the document is one to read."""
+        chapter = make_partner_chapter(self.lookup, self.edition.changes, folds=self.edition.document != "workbook")
+        return [chapter] if chapter else []
 
     def make_groups(self) -> list[Section]:
         """Make one section for each group, with its components and their nodes; then one for all component types."""
@@ -294,6 +308,7 @@ class _ChapterMaker:
 
 _GENERATED_SECTIONS: Mapping[str, Callable[[_ChapterMaker], Sequence[Section]]] = {
     "overview": _ChapterMaker.make_overview,
+    "between_partners": _ChapterMaker.make_between_partners,
     "use_cases": _ChapterMaker.make_use_cases,
     "groups": _ChapterMaker.make_groups,
     "frames": _ChapterMaker.make_frames,

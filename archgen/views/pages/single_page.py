@@ -79,8 +79,13 @@ def _make_surrounding_pages(page_maker: PageMaker, kind: str) -> Iterator[Page]:
         ((), lambda: matrix_pages.make_matrix_pages(lookup, with_nodes=edition.level == "implementation")),
         (("message",), lambda: page_maker.message_pages().make_pages()),
         (
-            ("partner", "pair", "interface"),
-            lambda: partner_pages.make_partner_pages(lookup, page_maker.keep_drawn, edition.signed_tags),
+            ("partner", "pair", "interface", "late", "todo"),
+            lambda: partner_pages.make_partner_pages(
+                lookup,
+                page_maker.keep_drawn,
+                edition.signed_tags,
+                edition.changes.comparison if edition.changes else None,
+            ),
         ),
     )
     for _, make_pages in sorted(makers, key=lambda each: kind not in each[0]):

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator
 
 from archgen.diagnostics.common_wording import join_words
+from archgen.diagnostics.natural_order import order_naturally
 from archgen.frozen import dataclass, replace
 from archgen.model.architecture import Architecture
 from archgen.model.node import Node
@@ -21,10 +22,12 @@ from archgen.views.pages import (
     page_marks,
     page_parts,
     partner_pages,
+    reliance_pages,
     requirement_pages,
     timing_chapter,
     variant_chapter,
 )
+from archgen.views.pages.as_built_page import make_as_built_blocks
 from archgen.views.pages.component_pages import ComponentPages
 from archgen.views.pages.context_pages import HOME_CRUMB
 from archgen.views.pages.message_pages import MessagePages
@@ -64,7 +67,9 @@ def make_pages(lookup: Lookup, edition: DocumentEdition) -> tuple[Page, ...]:
         *requirement_pages.make_requirement_pages(lookup),
         *context_pages.make_context_pages(lookup, page_maker.keep_drawn),
         *host_pages.make_host_pages(lookup, page_maker.keep_drawn),
-        *partner_pages.make_partner_pages(lookup, page_maker.keep_drawn, edition.signed_tags),
+        *partner_pages.make_partner_pages(
+            lookup, page_maker.keep_drawn, edition.signed_tags, edition.changes.comparison if edition.changes else None
+        ),
     ]
     implementation_pages = (
         [*page_maker.node_pages(), *context_pages.make_topic_pages(lookup)] if edition.level == "implementation" else []
@@ -99,6 +104,10 @@ def _make_paths_distinct(pages: Iterable[Page]) -> tuple[Page, ...]:
     return tuple(result)
 
 
+MAX_HOME_GROUPS = 24
+"""More groups are listed on a page of their own, so that the start page stays one to be looked at."""
+
+
 @dataclass(frozen=True, slots=True)
 class PageMaker:
     """Makes the pages; each method returns one page or yields several. Paths of pages may still collide."""
@@ -128,7 +137,8 @@ class PageMaker:
         blocks: list[Block] = list(make_figures(self.edition.drawings, "overview"))
         blocks += [Markdown(project.description)] if project.description else []
         blocks.append(Facts(tuple(make_document_facts(self.lookup, self.edition))))
-        blocks += [table] if (table := functional_tables.make_group_table(self.lookup)) else []
+        if len(self.architecture.groups) <= MAX_HOME_GROUPS:
+            blocks += [table] if (table := functional_tables.make_group_table(self.lookup)) else []
         section = Section("page:index", project.title, tuple(blocks))
         return Page(
             "index.html",
@@ -171,7 +181,7 @@ class PageMaker:
 
     def node_pages(self) -> Iterator[Page]:
         """Make a page for each shown node."""
-        for node in sorted(self.lookup.shown_nodes(), key=lambda each: each.id):
+        for node in sorted(self.lookup.shown_nodes(), key=lambda each: order_naturally(each.id)):
             yield self.make_node_page(node)
 
     def make_node_page(self, node: Node) -> Page:
@@ -212,6 +222,8 @@ class PageMaker:
                 self.lookup, make_figures(self.edition.drawings, "overview")
             )
             yield self._spanning_page("explorer", "Explorer", *explorer_blocks)
+        if len(self.architecture.groups) > MAX_HOME_GROUPS:
+            yield self._spanning_page("groups", "Groups", functional_tables.make_group_table(self.lookup))
         component_table = make_component_table(
             self.lookup, "table:components", "All components", components, inside_of=""
         )
@@ -248,15 +260,20 @@ class PageMaker:
             "findings",
             "Open points",
             summary,
+            finding_tables.make_owner_table(self.lookup, self.lookup.findings),
             finding_tables.make_finding_table(self.lookup, self.lookup.findings),
             *(chain_blocks if chain_points else ()),
         )
         growth_blocks = statistics_tables.make_growth_blocks(self.edition.history, self.edition.drawings)
         yield self._spanning_page("progress", "Progress", *self.edition.statistics, *growth_blocks)
+        if as_built := tuple(make_as_built_blocks(self.lookup, self.edition.seen_robots, self.edition.unread_record)):
+            yield self._spanning_page("as_built", "As built", *as_built)
         yield from self.timing_pages()
         view_drawings = [f"views/{name}" for name in self.architecture.views]
         yield self._spanning_page("views", "Views", *make_figures(self.edition.drawings, *view_drawings))
         yield from self.variant_pages()
+        if milestones := reliance_pages.make_milestone_table(self.lookup):
+            yield self._spanning_page("milestones", "Milestones", milestones)
         if frames := functional_tables.make_frame_table(self.lookup):
             yield self._spanning_page("frames", "Frames", *make_figures(self.edition.drawings, "frames"), frames)
         if sections := property_tables.make_property_sections(self.lookup):

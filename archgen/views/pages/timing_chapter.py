@@ -7,7 +7,7 @@ from collections.abc import Collection, Iterator, Mapping
 from archgen.timing.analysis import ChainResult
 from archgen.views import inline_text
 from archgen.views.lookup import Lookup
-from archgen.views.picture_shapes import Drawing
+from archgen.views.picture_shapes import UPRIGHT, Drawing
 from archgen.views.shapes import Block, Figure, Paragraph, Section
 from archgen.views.tables import functional_tables
 from archgen.views.timing import element_timing, timing_tables, timing_verdicts, use_tables
@@ -17,7 +17,15 @@ from archgen.views.timing.timing_lookup import TimingLookup
 def make_figures(drawings: Mapping[str, Drawing], *names: str) -> tuple[Figure, ...]:
     """Return figures for those of the named drawings that exist, in the order of the names."""
     return tuple(
-        Figure(f"figure:{name}", name, drawings[name].title, drawings[name].alt) for name in names if name in drawings
+        Figure(
+            f"figure:{name}",
+            drawings[name].id,  # on paper another one than by its name
+            drawings[name].title,
+            drawings[name].alt,
+            narrow=f"{name}{UPRIGHT}" if f"{name}{UPRIGHT}" in drawings else None,
+        )
+        for name in names
+        if name in drawings
     )
 
 

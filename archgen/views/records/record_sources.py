@@ -192,6 +192,7 @@ _PARTS: Mapping[str, Mapping[str, Source]] = {
         # Of one name the last value counts.
         "parameters": lambda _, lookup: {each.name: each.value for each in lookup.architecture.ros_parameters},
         "environment": lambda _, lookup: {each.name: each.value for each in lookup.architecture.ros_environment},
+        "discovery": lambda _, lookup: lookup.architecture.ros_discovery,
     },
     "use_case": {
         "actors": lambda use_case, _: {actor.id: actor.title for actor in use_case.actors.values()},

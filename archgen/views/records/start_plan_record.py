@@ -61,6 +61,8 @@ def _record_step(step: StartStep, lookup: Lookup) -> dict[str, object]:
             "environment": dict(step.environment),
             "directory": step.directory,
             "user": step.user,
+            "priority": step.scheduling.priority,
+            "cores": list(step.scheduling.cores),
             "needs_rights": list(step.needs_rights),
         }
     )

@@ -184,6 +184,12 @@ def make_ros_blocks(lookup: Lookup, component: Component) -> tuple[Block, ...]:
     )
 
 
+def condense_node_facts(lookup: Lookup, node: Node, component: Component) -> Iterator[FactRow]:
+    """Yield what a node of a component is, where it runs and how fast it works, in a row each."""
+    rows = _condense_facts(node, component, list_node_facts(lookup, node))
+    yield from (row for row in rows if row[0] in {"Node", "Package and host", "Timing"})
+
+
 def _find_described_component(lookup: Lookup, node: Node) -> str | None:
     """Return the id of the component that a node is described at: the first shown one that it implements."""
     return next((name for name in node.implements if lookup.scope.shows_component(name)), None)

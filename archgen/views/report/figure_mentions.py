@@ -42,7 +42,6 @@ _BLOCK_WORDS = {
     "figure:views/": "shows this part of the architecture by itself",
     "table:parameters": "lists the parameters of each node with their values",
     "table:message_fields": "lists them with their types and meanings",
-    "figure:timing/": "shows how often the nodes of a group do something",
     "figure:timing": "shows how often all nodes do something",
     "table:timing": "says of each activity how often it comes and how long its response takes",
     "table:fused": "lists the inputs that are used together, and how old they may be",

@@ -7,15 +7,17 @@ from collections.abc import Iterator
 
 from archgen.analyses.size_counts import measure_progress
 from archgen.model.report_settings import ReportSettings
+from archgen.timing.chains.chain_verdicts import VERDICT_MEANINGS
 from archgen.views import inline_text
 from archgen.views.lookup import Lookup
-from archgen.views.pages import dashboard, page_marks
+from archgen.views.pages import dashboard
 from archgen.views.pages.report_outline import DocumentEdition
 from archgen.views.picture_shapes import Drawing
 from archgen.views.shapes import (
     Block,
     Column,
     DashboardCard,
+    FactRow,
     Facts,
     Figure,
     Inlines,
@@ -28,6 +30,7 @@ from archgen.views.shapes import (
     keep_columns,
     make_columns,
 )
+from archgen.views.timing import timing_verdicts
 from archgen.views.timing.timing_tables import is_blank
 
 _SIGNS = (
@@ -42,6 +45,14 @@ _ROS_SIGNS = (
     ("TL, D, L, M", "transient local (latched), deadline, lifespan, manual liveliness"),
     ("a grey QoS", "nobody wrote it: the default of ROS"),
     ("`nav_msgs/Odometry`", "messages without their folder: `msg`, `srv` and `action` are told by the use"),
+)
+_SHORT_SIGNS = (
+    ("≤, ≥", "at most, at least; a sum with unknown parts is at least what is known"),
+    ("Rate", "how often it comes: as promised, else as it follows from the design"),
+    ("Gap", "the longest time between two of them; unbounded where nobody says that one comes"),
+    ("Age", "from the start of the work that gives it until it lies at the reader"),
+    ("Promised", "what the giving partner has stated; nobody promises anything else"),
+    ("Open, owes", "what the giving partner has still to state"),
 )
 _LEVEL_WORDS = {
     "functional": "functional level",
@@ -60,7 +71,7 @@ def make_title_facts(lookup: Lookup, edition: DocumentEdition) -> tuple[tuple[st
         ("Authors", ", ".join(settings.authors)),
         ("Dissemination", settings.dissemination),
         ("State", describe_progress(lookup)),
-        ("Level", describe_level(edition)),
+        ("Level", describe_level(edition) if edition.document == "full" else ""),
         ("Revision", edition.revision),
         ("ROS distribution", architecture.distro or ""),
     )
@@ -78,7 +89,7 @@ def describe_progress(lookup: Lookup) -> str:
     parts = [inline_text.count_noun(len(architecture.components), "component")]
     results = lookup.timing.chains if lookup.timing else ()
     if results:
-        troubled = page_marks.list_troubled_chains(lookup)
+        troubled = timing_verdicts.list_troubled_chains(lookup)
         met = len(results) - len(troubled)
         parts.append(f"{met} of {inline_text.count_noun(len(results), 'chain')} in time")
     if open_count := len(lookup.findings) + len(dashboard.make_chain_points(lookup)):
@@ -86,15 +97,17 @@ def describe_progress(lookup: Lookup) -> str:
     return ", ".join(parts)
 
 
-def make_partner_table(lookup: Lookup) -> Table | None:
-    """List the partners with what they are and what they own, for the title page."""
+def make_partner_table(lookup: Lookup, *, has_chapter: bool = False) -> Table | None:
+    """List the partners with what they are and what they own, for the title page; those with a chapter are linked to it."""
     architecture = lookup.architecture
     if not architecture.partners:
         return None
     counts = {row.id: row.components for row in measure_progress(architecture) if row.scope == "partner"}
     rows = tuple(
         (
-            inline_text.to_inlines(Text(partner.title, strong=True)),
+            inline_text.to_inlines(
+                Text(partner.title, strong=True, ref=f"partner:{partner.id}" if has_chapter else None)
+            ),
             inline_text.to_inlines(" ".join((partner.description or "").split())),
             inline_text.to_inlines(str(counts.get(partner.id, 0))),
             inline_text.to_inlines(str(sum(partner.id in node.owners for node in architecture.nodes.values()))),
@@ -102,7 +115,7 @@ def make_partner_table(lookup: Lookup) -> Table | None:
         for partner in architecture.partners.values()
     )
     columns = make_columns("Partner", ("Who it is", 3), ("Components", 0.6, "right"), ("Nodes", 0.5, "right"))
-    anchors = tuple(f"partner:{partner_id}" for partner_id in architecture.partners)
+    anchors = () if has_chapter else tuple(f"partner:{partner_id}" for partner_id in architecture.partners)
     return Table("table:partners", "Partners", columns, rows, anchors, numbered=False)
 
 
@@ -133,6 +146,9 @@ def make_front_sections(lookup: Lookup, edition: DocumentEdition, legend: Drawin
     if settings.abbreviations:
         rows = tuple((name, inline_text.to_inlines(meaning)) for name, meaning in settings.abbreviations)
         yield Section("front:abbreviations", "Abbreviations", (Facts(rows),))
+    if edition.document != "full":
+        yield Section("front:signs", "How to read the tables", (Facts(tuple(_list_short_signs(lookup))),))
+        return
     signs = (*_SIGNS, *(_ROS_SIGNS if edition.level == "implementation" and lookup.architecture.nodes else ()))
     facts = Facts(tuple((name.replace("`", ""), inline_text.message_to_inlines(words)) for name, words in signs))
     yield Section("front:signs", "How to read the tables", (facts,))
@@ -141,6 +157,16 @@ def make_front_sections(lookup: Lookup, edition: DocumentEdition, legend: Drawin
             f"figure:{legend.id}", legend.id, legend.title, "The forms of boxes and arrows.", numbered=False
         )
         yield Section("front:legend", "How to read the pictures", (figure,))
+
+
+def _list_short_signs(lookup: Lookup) -> Iterator[FactRow]:
+    """Yield what the columns and the verdicts mean, those that the architecture has."""
+    for name, words in _SHORT_SIGNS:
+        yield name, inline_text.to_inlines(words)
+    verdicts = {result.verdict for result in (lookup.timing.chains if lookup.timing else ())}
+    for word, meaning in VERDICT_MEANINGS.items():
+        if word in verdicts:
+            yield word, inline_text.to_inlines(meaning)
 
 
 def _make_history_table(settings: ReportSettings) -> Table:
@@ -197,6 +223,13 @@ def make_summary(lookup: Lookup, edition: DocumentEdition, overview: Section | N
     )
     anchor = overview.anchor if overview else "page:index"
     return Section(anchor, "Summary", (*words, *blocks, figures), sections, page_break=True)
+
+
+def stack_figure(figure: KeyFigure) -> Inlines:
+    """Write a figure of the start page with its words below it."""
+    value = f"{figure.value} of {figure.total}" if figure.total else figure.value
+    note = "".join(part.text for part in figure.note)
+    return Text(value, strong=True), Text(f"{figure.title}: {note}", muted=True, line_break=True)
 
 
 def _phrase_figure(figure: KeyFigure) -> tuple[str, Inlines]:

@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Sequence
+from collections.abc import Iterable
 from decimal import Decimal
 
 from archgen.frozen import replace
 from archgen.views import inline_text
-from archgen.views.shapes import Block, Bullets, Column, Facts, Inlines, Paragraph, Section, Table, Text
+from archgen.views.shapes import Block, Bullets, Facts, Inlines, Paragraph, Section, Table, Text
 from archgen.views.short_figures import QUANTITY, round_number, shorten_match, write_comparisons
 
 _TIME_FACTORS = {"ns": Decimal(1), "us": Decimal(1000), "ms": Decimal(10**6), "s": Decimal(10**9)}
@@ -61,9 +61,10 @@ def _print_quantity(found: re.Match[str], *, is_lower: bool) -> str:
 
 def _print_table(table: Table) -> Table:
     columns, cells_by_column = [], []
+    table_unit = _choose_unit(table)
     for index, column in enumerate(table.columns):
         cells = [row[index] for row in table.rows]
-        unit = _choose_unit(column, cells)
+        unit = table_unit if column.align == "right" and _list_times(cells) else ""
         columns.append(replace(column, title=f"{column.title}, {'µs' if unit == 'us' else unit}") if unit else column)
         cells_by_column.append(
             [tuple(_convert_text(part, unit) for part in cell) if unit else print_inlines(cell) for cell in cells]
@@ -72,15 +73,20 @@ def _print_table(table: Table) -> Table:
     return replace(table, columns=tuple(columns), rows=rows)
 
 
-def _choose_unit(column: Column, cells: Sequence[Inlines]) -> str:
-    """Return the unit of a column of times, that of its middle value; empty for any other column."""
-    times = [
+def _list_times(cells: Iterable[Inlines]) -> list[Decimal]:
+    return [
         Decimal(found[2]) * _TIME_FACTORS[found[3]]
         for cell in cells
         for part in cell
         if (found := _TIME_CELL.fullmatch(part.text))
     ]
-    if column.align != "right" or len(times) < _MIN_TIMES:
+
+
+def _choose_unit(table: Table) -> str:
+    """Return the unit of all columns of times, that of their middle value; empty where there are none."""
+    places = [index for index, column in enumerate(table.columns) if column.align == "right"]
+    times = _list_times(row[index] for row in table.rows for index in places)
+    if len(times) < _MIN_TIMES:
         return ""
     # Nothing at all takes no time in any unit.
     lengths = sorted(time for time in times if time) or [_TIME_FACTORS["ms"]]
@@ -95,4 +101,7 @@ def _convert_text(part: Text, unit: str) -> Text:
     sign = found[1] or ""
     value = Decimal(found[2]) * _TIME_FACTORS[found[3]] / _TIME_FACTORS[unit]
     rounding_sign = sign or (">" if part.is_lower else "<")
-    return replace(part, text=write_comparisons(f"{sign}{round_number(value, rounding_sign)}"))
+    # As many digits as where the same time stands in a larger unit: 1.51 s for 1503 ms is 1510 ms.
+    scale = Decimal(1).scaleb(max(value.adjusted() - 2, 0)) if value and unit != "s" else Decimal(1)
+    rounded = Decimal(round_number(value / scale, rounding_sign)) * scale
+    return replace(part, text=write_comparisons(f"{sign}{rounded:f}"))

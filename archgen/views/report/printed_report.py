@@ -19,7 +19,7 @@ from archgen.views.lookup import Lookup, collect_messages
 from archgen.views.pages import report_outline
 from archgen.views.pages.context_pages import shown_topics
 from archgen.views.pages.report_outline import DocumentEdition
-from archgen.views.picture_shapes import Drawing
+from archgen.views.picture_shapes import Drawing, Graph, Sheet
 from archgen.views.report import condensed_blocks, front_pages
 from archgen.views.report.condensed_blocks import shorten_message
 from archgen.views.report.figure_mentions import mention_section
@@ -115,12 +115,21 @@ class _ReportPrinter:
         for block in blocks:
             if not isinstance(block, Figure):
                 yield block
-            elif block.graph.startswith(CHART_PREFIX):
+            elif block.graph.startswith(CHART_PREFIX) and not isinstance(self.drawings.get(block.graph), Sheet):
                 yield from self._print_sequence(block)
             elif (
                 block.graph not in _LARGE_DRAWINGS or self.edition.settings.has_large_paper
             ) and block.graph in self.drawings:
-                yield dataclasses.replace(block, graph=self.drawings[block.graph].id)
+                yield from self._print_picture(block, self.drawings[block.graph])
+
+    def _print_picture(self, figure: Figure, drawing: Drawing) -> Iterator[Figure]:
+        """Yield a figure with the report's own picture and what that shows; a group in which nothing flows has none."""
+        if isinstance(drawing, Graph) and drawing.kind in {"group", "group-timing"} and not drawing.arrows:
+            return
+        caption = figure.caption
+        if isinstance(drawing, Graph) and not any(box.emphasis == "neighbour" for box in drawing.boxes):
+            caption = caption.removesuffix(" and neighbours")
+        yield dataclasses.replace(figure, graph=drawing.id, caption=caption)
 
     def _print_sequence(self, figure: Figure) -> Iterator[Figure]:
         """Yield a sequence as the pieces that it is drawn in."""
@@ -167,7 +176,10 @@ class _ReportPrinter:
         return tuple(_unturn_tables(self._keep_legible(condensed_blocks.make_ros_blocks(self.lookup, component))))
 
     def make_ros_annexes(self) -> Iterator[Section]:
-        """Yield the annexes of the ROS side: the components one by one, and the parameters of all nodes."""
+        """Yield the annexes of the ROS side: the components one by one, and the parameters of all nodes.
+
+        Without pictures: they say what the tables say, and each would take half a page.
+        """
         if not self._shows_ros or "groups" not in self.edition.chapter_names:
             return
         if self.edition.ros_place == "annex":
@@ -186,7 +198,7 @@ class _ReportPrinter:
                 Section(
                     f"implementation:{component.id}",
                     name_in_place(self.lookup, component),
-                    self._make_ros_blocks(component.id),
+                    tuple(each for each in self._make_ros_blocks(component.id) if not isinstance(each, Figure)),
                 )
                 for component in self.lookup.shown_components(group_id)
                 if self.lookup.nodes_of.get(component.id)
@@ -200,7 +212,8 @@ class _ReportPrinter:
         blocks = tuple(_unturn_tables(self._keep_legible(section.blocks)))
         if blocks:
             yield dataclasses.replace(section, blocks=blocks, sections=())
-        sections = tuple(self._print_others(each) for each in section.sections)
+        # How often the nodes of a group work is told by the table of rates.
+        sections = tuple(self._print_others(each) for each in section.sections if each.anchor != "timing:groups")
         sections = tuple(each for each in sections if each.blocks)
         if sections:
             yield Section("page:rates", _TIMING_ANNEX, (), sections, appendix=True, page_break=False)

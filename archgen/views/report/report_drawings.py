@@ -7,7 +7,7 @@ from collections.abc import Collection, Iterator, Mapping, Sequence
 from archgen.frozen import replace
 from archgen.views.graphs.graph_folding import add_legend_keys
 from archgen.views.lookup import Lookup
-from archgen.views.picture_shapes import Arrow, Box, Drawing, Graph, SequenceChart
+from archgen.views.picture_shapes import UPRIGHT, Arrow, Box, Drawing, Graph, SequenceChart
 from archgen.views.sequences.sequence_charts import CHART_PREFIX, make_printed_charts
 
 _PREFIX = "report/"
@@ -28,6 +28,7 @@ def make_report_drawings(
         for name, drawing in drawings.items()
         if shows_ros or not (isinstance(drawing, Graph) and drawing.kind in {"implementation", "group-timing"})
     }
+    fitted |= {name: fitted[f"{name}{UPRIGHT}"] for name in fitted if f"{name}{UPRIGHT}" in fitted}
     fitted = dict(_cut_sequences(lookup, fitted))
     legend = _draw_legend([drawing for drawing in fitted.values() if isinstance(drawing, Graph)])
     fitted = {name: _drop_legend(drawing) for name, drawing in fitted.items()}

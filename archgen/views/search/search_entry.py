@@ -29,6 +29,12 @@ class SearchEntry:
     keys: tuple[str, ...] = ()
     text: str = ""
 
+    @property
+    def name(self) -> str:
+        """The id of what it leads to, which may be what it belongs to; its title where that has none."""
+        kind, _, name = self.refs[0].partition(":") if self.refs else ("", "", self.title)
+        return name.partition("/")[2] if kind == "table" else name
+
 
 def join_entry_parts(*parts: str | None) -> str:
     """Join the parts that are not empty to the second line of an entry."""

@@ -10,7 +10,9 @@ from archgen.model.step_connections import ConnectedStep
 from archgen.model.use_case_steps import StepEnd
 from archgen.views import inline_text
 from archgen.views.lookup import Lookup
+from archgen.views.picture_shapes import UPRIGHT
 from archgen.views.sequences import sequence_charts
+from archgen.views.sequences.lane_sheets import has_lanes
 from archgen.views.sequences.sequence_charts import CHART_PREFIX
 from archgen.views.shapes import (
     Block,
@@ -53,7 +55,8 @@ def make_sequence_blocks(lookup: Lookup, use_case: UseCase) -> Iterator[Block]:
         yield Paragraph((Text(lead), *numbers, Text(rest)), "warning")
     chart_id = f"{CHART_PREFIX}{use_case.id}"
     alt = f"The steps of {use_case.title} between those who take part; the table has them in words."
-    yield Figure(f"figure:{chart_id}", chart_id, f"{use_case.title}, step by step", alt)
+    narrow = f"{chart_id}{UPRIGHT}" if has_lanes(steps) else None
+    yield Figure(f"figure:{chart_id}", chart_id, f"{use_case.title}, step by step", alt, narrow=narrow)
     yield make_step_table(lookup, use_case, steps)
 
 
@@ -92,11 +95,50 @@ def make_step_table(lookup: Lookup, use_case: UseCase, steps: Iterable[Connected
     return drop_empty_columns(Table(anchor, f"Steps of {use_case.title}", columns, rows))
 
 
+def make_short_steps(lookup: Lookup, use_case: UseCase) -> Table:
+    """List the steps in a line each: who, to whom, what, within what time. A sender stands where he was not the last receiver."""
+    rows = []
+    last = None
+    for each in lookup.steps.by_use_case[use_case.id]:
+        source, target = each.step.source, each.step.target
+        sender = () if source.participant == last else _link_participant(lookup, use_case, source)
+        say = " ".join(each.step.say.split()) if each.step.say else ""
+        words = (*inline_text.to_inlines(say),) if say else _link_carriers(lookup, each)
+        if each.is_broken:
+            words = (*words, Text(" "), Text("no connection", status="warning"))
+        rows.append(
+            (
+                inline_text.to_inlines(str(each.number)),
+                sender,
+                _link_participant(lookup, use_case, target)
+                if not each.step.is_inner
+                else (Text("itself", muted=True),),
+                _name_partners(lookup, target),
+                words,
+                _make_time_cell(lookup, use_case, each.number),
+            )
+        )
+        last = target.participant
+    columns = make_columns(
+        ("", 0.3, "right"), ("From", 1.2), ("To", 1.2), ("Whose", 0.8), ("What happens", 2.2), ("Within", 0.6, "right")
+    )
+    anchor = f"table:steps/{use_case.id}"
+    table = Table(anchor, f"Steps of {use_case.title}", columns, tuple(rows), numbered=False, dense=True)
+    return drop_empty_columns(table)
+
+
 def _link_participant(lookup: Lookup, use_case: UseCase, end: StepEnd) -> Inlines:
     component = lookup.architecture.find_component(end.participant) if end.kind != "actor" else None
     if component is not None:
         return (inline_text.component_link(component),)
     return inline_text.to_inlines(Text(sequence_charts.name_participant(lookup, use_case, end), emphasis=True))
+
+
+def _name_partners(lookup: Lookup, end: StepEnd) -> Inlines:
+    component = lookup.architecture.find_component(end.participant) if end.kind != "actor" else None
+    partners = lookup.architecture.partners
+    titles = (partners[owner].title for owner in (component.owners if component else ()) if owner in partners)
+    return inline_text.to_inlines(Text(", ".join(titles), muted=True)) if component and component.owners else ()
 
 
 def _link_carriers(lookup: Lookup, connected: ConnectedStep) -> Inlines:

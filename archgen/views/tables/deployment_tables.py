@@ -39,6 +39,7 @@ def make_link_table(lookup: Lookup) -> Table | None:
     """List the links between hosts and devices; with what is spoken on them, where one says it."""
     architecture = lookup.architecture
     with_protocol = any(link.protocol for link in architecture.links.values())
+    with_owners = any(link.owner for link in architecture.links.values())
     with_devices = any(link.devices for link in architecture.links.values())
     rows = tuple(
         (
@@ -49,13 +50,14 @@ def make_link_table(lookup: Lookup) -> Table | None:
                     *(device_link(lookup, device) for device in link.devices),
                 )
             ),
+            *((inline_text.partner_link(architecture, link.owner) if link.owner else (),) if with_owners else ()),
             *((inline_text.to_inlines(name_medium(link.protocol or "")),) if with_protocol else ()),
             inline_text.quantity_to_inlines(link.bandwidth),
             _latency_cell(link),
         )
         for link in lookup.architecture.links.values()
     )
-    protocol_columns = (Column("Protocol"),) if with_protocol else ()
+    protocol_columns = (*((Column("Owner"),) if with_owners else ()), *((Column("Protocol"),) if with_protocol else ()))
     columns = (Column("Link"), Column("Connects", 1.5), *protocol_columns, Column("Bandwidth"), Column("Latency"))
     # Links have no page or section of their own: references to one lead to its row.
     anchors = tuple(f"link:{name}" for name in lookup.architecture.links)

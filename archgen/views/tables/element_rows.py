@@ -237,10 +237,11 @@ def _variant_rows(lookup: Lookup) -> _Rows:
 
 def _list_plain_rows(lookup: Lookup, section: str) -> tuple[tuple[str, ...], list[TextRow]]:
     """Return columns and rows of a section without a table of its own: the keys that hold words, numbers or lists of them."""
+    element_keys = KEYS[SECTION_KINDS[section]]
     elements = list(getattr(lookup.architecture, section).values())
     keys = [
         key
-        for key, part in KEYS[SECTION_KINDS[section]].items()
+        for key, part in element_keys.items()
         if not {part} & (KEYS.keys() | ENTRIES.keys() | DATA_PARTS | {"prose"}) and key != "title"
     ]
     keys = [key for key in keys if elements and hasattr(elements[0], key)]

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Iterable, Mapping
 
 from archgen.diagnostics.common_wording import join_words
@@ -34,6 +35,35 @@ def make_finding_table(
     )
     columns = make_columns(("Severity", 0.6), ("Finding", 3), ("Owner", 0.8), ("Place", 1.3), ("Rule", 1))
     return Table(anchor, "Open points", columns, rows) if rows else None
+
+
+_MANY_FINDINGS = 40
+"""Of more findings a table says first who has which."""
+
+
+def make_owner_table(lookup: Lookup, findings: Iterable[Diagnostic]) -> Table | None:
+    """Count many findings by who must act and by rule, those with most first; None for a few."""
+    by_owner: dict[str, tuple[Inlines, Counter[str]]] = {}
+    for finding in findings:
+        who = element_references.answering_cell(lookup, finding.element, finding.span)
+        # Whoever cannot be named is told by a question, which each finding asks for itself.
+        names = tuple(run.text for run in who if run.ref)
+        cell = who if names else (Text("nobody yet"),)
+        by_owner.setdefault("".join(names), (cell, Counter()))[1][finding.rule] += 1
+    if sum(counts.total() for _, counts in by_owner.values()) <= _MANY_FINDINGS:
+        return None
+    rows = tuple(
+        (
+            cell,
+            (Text(str(counts.total()), sort_number=str(counts.total())),),
+            inline_text.join_inlines(
+                (Text(rule, ref=f"rule:{rule}"), Text(f" {count}", muted=True)) for rule, count in counts.most_common()
+            ),
+        )
+        for cell, counts in sorted(by_owner.values(), key=lambda each: -each[1].total())
+    )
+    columns = make_columns(("Owner", 1), ("Points", 0.5, "right"), ("Of which rules", 4))
+    return Table("table:points_by_owner", "By who must act", columns, rows)
 
 
 _RULE_STATES: Mapping[str, tuple[str, Status]] = {

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Container
+from collections.abc import Container, Iterable
 from fractions import Fraction
 
 from archgen.analyses.size_counts import (
@@ -82,6 +82,11 @@ PROGRESS_STEPS = ("described", "typed", "mapped", "timed", "traced")
 """The steps that progress counts, in order; each is a field of `Progress` and of the history's `Row`."""
 
 
+def list_steps(rows: Iterable[ProgressCounts]) -> tuple[str, ...]:
+    """Return the steps of which rows say something: what was seen of a robot only where somebody looked at one."""
+    return (*PROGRESS_STEPS, *(("seen",) if any(row.seen is not None for row in rows) else ()))
+
+
 def format_figures(project_size: ArchitectureSize) -> list[tuple[str, str, str]]:
     """Return key, title and value of each figure."""
     return [
@@ -96,8 +101,8 @@ def format_count(value: int | Fraction) -> str:
     return f"{float(value):.1f}" if isinstance(value, Fraction) else str(value)
 
 
-def make_statistics_tables(architecture: Architecture) -> tuple[Table, ...]:
-    """Make the tables of size and progress; progress only where there are components."""
+def make_statistics_tables(architecture: Architecture, seen: frozenset[str] | None = None) -> tuple[Table, ...]:
+    """Make the tables of size and progress; progress only where there are components. `seen` are those seen on a robot."""
     rows = tuple(
         (inline_text.to_inlines(label), (Text(value, sort_number=value),))
         for _, label, value in format_figures(measure_size(architecture))
@@ -106,13 +111,13 @@ def make_statistics_tables(architecture: Architecture) -> tuple[Table, ...]:
         "table:size", "Size of the architecture", (Column("Figure", 3), Column("Value", 1, "right")), rows
     )
     property_tables = tuple(filter(None, [_make_property_table(architecture)]))
-    progress_rows = [row for row in measure_progress(architecture) if row.components]
+    progress_rows = [row for row in measure_progress(architecture, seen=seen) if row.components]
     if not progress_rows:
         return (size_table, *property_tables)
     columns = (
         Column("Of", 2),
         Column("Components", 0.9, "right"),
-        *(Column(s.capitalize(), 0.8, "right") for s in PROGRESS_STEPS),
+        *(Column(s.capitalize(), 0.8, "right") for s in list_steps(progress_rows)),
     )
     progress_table = Table(
         "table:progress", "Progress", columns, tuple(_progress_row(architecture, row) for row in progress_rows)
@@ -134,7 +139,7 @@ def _make_property_table(architecture: Architecture) -> Table | None:
 
 
 def _progress_row(architecture: Architecture, row: ProgressCounts) -> tuple[Inlines, ...]:
-    counts = (getattr(row, step) for step in PROGRESS_STEPS)
+    counts = (getattr(row, step) for step in list_steps((row,)))
     return (
         _subject_cell(architecture, row),
         inline_text.to_inlines(str(row.components)),

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from archgen.diagnostics.natural_order import order_naturally
 from archgen.model.graph_search import find_reachable
 from archgen.model.message_types import ConceptualType
 from archgen.model.port_media import name_medium
@@ -39,7 +40,7 @@ def make_type_table(lookup: Lookup) -> Table | None:
             inline_text.to_inlines(str(len(lookup.outputs_of_type.get(conceptual_type.name, ())))),
             inline_text.to_inlines(describe_mapping(conceptual_type)),
         )
-        for conceptual_type in sorted(shown_types(lookup), key=lambda each: each.name.casefold())
+        for conceptual_type in sorted(shown_types(lookup), key=lambda each: order_naturally(each.name))
     )
     columns = make_columns(
         ("Conceptual type", 1.3),

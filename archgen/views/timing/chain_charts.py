@@ -45,10 +45,8 @@ def make_chain_chart(lookup: Lookup, timing_lookup: TimingLookup, result: ChainR
     """Draw the terms of a chain's bound below each other, and their sum against the deadline."""
     title = lookup.architecture.chains[result.id].title
     deadline = result.deadline.value if result.deadline else None
-    verdict_text, term_bars = (
-        describe_chain_verdict(result, timing_lookup),
-        tuple(_make_term_bars(lookup, timing_lookup, result)),
-    )
+    verdict_text = describe_chain_verdict(result, timing_lookup)
+    term_bars = tuple(_make_term_bars(lookup, timing_lookup, result))
     length = None if result.best.value is None else to_float(result.best.value / _NS_PER_MS)
     segment = BarSegment(length, "best", "", f"best case: {value_format.display_lower_bound(result.best)}")
     return Chart(
@@ -71,8 +69,8 @@ def make_chain_chart(lookup: Lookup, timing_lookup: TimingLookup, result: ChainR
 
 
 def _make_term_bars(lookup: Lookup, timing_lookup: TimingLookup, result: ChainResult) -> Iterator[ChartBar]:
-    """Yield a bar for each step, starting where the known part of the steps before it ends."""
-    start = Fraction(0)
+    """Yield a bar for each step, starting where the steps before it end; what is unknown of them pushes it."""
+    start, gaps = Fraction(0), 0
     for term in result.terms:
         values = (term.sampling, term.response, term.link)
         activity = timing_lookup.analysis.system.activities.get(term.activity)
@@ -81,11 +79,12 @@ def _make_term_bars(lookup: Lookup, timing_lookup: TimingLookup, result: ChainRe
             tuple(_term_segment(kind, value) for kind, value in zip(_TERM_KINDS, values, strict=True)),
             _format_increment(values),
             to_float(start / _NS_PER_MS),
+            gaps,
             ref=f"node:{activity.node}" if activity else None,
             is_outside=is_outside_scope(lookup, timing_lookup, term.activity),
         )
-        # An unknown part has no length; all that follows then begins too early, which the hatched piece shows.
         start += sum_known_parts(term)
+        gaps += any(value.value is None for value in values)
 
 
 _TERM_KIND_WORDS = {"sampling": "waits", "response": "responds within", "link": "on the network"}

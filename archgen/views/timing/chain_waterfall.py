@@ -33,7 +33,8 @@ _KINDS: tuple[tuple[PieceKind, str], ...] = (("sampling", "waits"), ("response",
 _CUT_SHARE = Fraction(1, 2)
 """A piece that is longer than this share of all is drawn short: else the others could not be told apart."""
 _CUT_LENGTH = 0.1
-_UNKNOWN_LENGTH = 0.12
+_UNKNOWN_LENGTH, _UNKNOWN_ROOM = 0.12, 0.5
+"""The share of the axis for a part that nobody knows, and for all of them together at most."""
 _TICKS = 6
 """About so many figures along the axis."""
 
@@ -45,7 +46,10 @@ class _CutAxis:
     total: Fraction
     cut: tuple[Fraction, Fraction] | None
     room: float
-    """The share of the axis that the known time takes."""
+    """The share of the axis that the known time takes; the rest are gaps, one for each part that nobody knows."""
+    gap: float = 0.0
+    known_until: Fraction | None = None
+    """Where the first such part begins: from there on times are no places on the axis. None: they all are."""
 
     def find_share(self, time: Fraction) -> float:
         """Return the share of the axis at a time."""
@@ -66,12 +70,11 @@ def make_waterfall(lookup: Lookup, timing_lookup: TimingLookup, result: ChainRes
         return None
     advice = advise_on_chain(timing_lookup.analysis, result)
     lead = advice.lateness if advice else chain_charts.describe_chain_verdict(result, timing_lookup)
-    total, deadline = (
-        sum_fractions(map(sum_known_parts, result.terms)),
-        result.deadline.value if result.deadline else None,
-    )
+    total = sum_fractions(map(sum_known_parts, result.terms))
+    deadline = result.deadline.value if result.deadline else None
     axis = _make_axis(result.terms, total)
-    step_limit = axis.find_share(deadline) if deadline is not None and deadline <= total else None
+    reach = total if axis.known_until is None else axis.known_until
+    step_limit = axis.find_share(deadline) if deadline is not None and deadline <= reach else None
     whole = max(total, deadline or Fraction(0)) or Fraction(1)
     return Waterfall(
         inline_text.message_to_inlines(lead),
@@ -111,13 +114,18 @@ def _list_parts(term: ChainTerm) -> Iterator[tuple[PieceKind, str, TimingValue]]
 
 
 def _make_axis(terms: Sequence[ChainTerm], total: Fraction) -> _CutAxis:
-    """Choose the axis: room for what is unknown at its end, and the longest piece cut if it dwarfs all others."""
-    is_partial = any(value.value is None for term in terms for _, _, value in _list_parts(term))
-    room = 1 - _UNKNOWN_LENGTH if is_partial else 1.0
+    """Choose the axis: a gap for each part that is unknown, and the longest piece cut if it dwarfs all others."""
+    time, unknown_starts = Fraction(0), list[Fraction]()
+    for term in terms:
+        for _, _, value in _list_parts(term):
+            unknown_starts += [time] if value.value is None else []
+            time += value.value or 0
+    gap = min(_UNKNOWN_LENGTH, _UNKNOWN_ROOM / len(unknown_starts)) if unknown_starts else 0.0
+    room, known_until = 1 - gap * len(unknown_starts), min(unknown_starts, default=None)
     longest = max(_list_stretches(terms), key=lambda stretch: stretch[1] - stretch[0], default=None)
     if longest is None or not _CUT_SHARE * total < longest[1] - longest[0] < total:
-        return _CutAxis(total, None, room)
-    return _CutAxis(total, longest, room)
+        return _CutAxis(total, None, room, gap, known_until)
+    return _CutAxis(total, longest, room, gap, known_until)
 
 
 def _list_stretches(terms: Sequence[ChainTerm]) -> Iterator[tuple[Fraction, Fraction]]:
@@ -158,9 +166,7 @@ def _make_ticks(axis: _CutAxis) -> Iterator[tuple[float, str]]:
     """Yield round times along the axis; none inside of what is drawn short."""
     yield 0.0, "0"
     start, end = axis.cut or (Fraction(0), Fraction(0))
-    step = _choose_step(axis.total - (end - start))
-    if not step:
-        return
+    step = _choose_step(axis.total - (end - start)) or axis.total + 1
     # Behind the cut first: there is the room.
     times = [end] if axis.cut else []
     multiple = step
@@ -168,12 +174,16 @@ def _make_ticks(axis: _CutAxis) -> Iterator[tuple[float, str]]:
         if not start <= multiple <= end:
             times.append(multiple)
         multiple = (multiple // step + 1) * step if multiple < start or multiple > end else (end // step + 1) * step
+    end_place = 1.0 if axis.known_until is None else axis.find_share(axis.known_until)
     last_place = 0.0
     for time in sorted(times):
         place = axis.find_share(time)
-        if place - last_place > 0.06 and place < 0.97:  # noqa: PLR2004 - shares that keep two figures apart
+        if place - last_place > 0.06 and place < end_place - 0.03:  # noqa: PLR2004 - shares that keep two figures apart
             yield place, _format_time(time)
             last_place = place
+    if axis.known_until is not None:
+        # Figures behind what nobody knows would be no times: the axis ends.
+        yield end_place + axis.gap / 2, "+ ?"
 
 
 def _choose_step(length: Fraction) -> Fraction:
@@ -189,7 +199,7 @@ def _choose_step(length: Fraction) -> Fraction:
 def _make_steps(
     lookup: Lookup, timing_lookup: TimingLookup, terms: Sequence[ChainTerm], axis: _CutAxis
 ) -> Iterator[WaterfallStep]:
-    time = Fraction(0)
+    time, pushed = Fraction(0), 0.0
     for term in terms:
         pieces: list[WaterfallPiece] = []
         for kind, word, value in _list_parts(term):
@@ -197,13 +207,17 @@ def _make_steps(
             if value.value:
                 start, time = time, time + value.value
                 is_cut = axis.cut == (start, time)
-                pieces.append(WaterfallPiece(kind, axis.find_share(start), axis.find_share(time), tip, is_cut))
+                places = (axis.find_share(start) + pushed, axis.find_share(time) + pushed)
+                pieces.append(WaterfallPiece(kind, *places, tip, is_cut))
             elif value.value is None:
-                # It has no length: what follows it is drawn too early, and the hatching says so.
-                start_share = pieces[-1].end if pieces else axis.find_share(time)
-                end_share = min(1.0, start_share + _UNKNOWN_LENGTH)
-                pieces.append(WaterfallPiece("unknown", start_share, end_share, f"{word} for how long, nobody knows"))
-        owners = inline_text.owner_links(lookup.architecture, _list_owners(lookup, timing_lookup, term.activity))
+                # It has no length: a gap stands for it, which pushes all that follows.
+                start_share = axis.find_share(time) + pushed
+                pushed += axis.gap
+                words = f"{word} for how long, nobody knows"
+                pieces.append(WaterfallPiece("unknown", start_share, start_share + axis.gap, words))
+        owners = inline_text.owner_links(
+            lookup.architecture, element_references.list_activity_owners(lookup, term.activity)
+        )
         activity = timing_lookup.analysis.system.activities.get(term.activity)
         host = inline_text.host_link(lookup.architecture, activity.host) if activity and activity.host else ()
         yield WaterfallStep(
@@ -222,12 +236,6 @@ def _describe_step(term: ChainTerm) -> str:
         if value.value or value.value is None
     ]
     return " · ".join(filter(None, (", ".join(phrases) or "adds no time", term.why)))
-
-
-def _list_owners(lookup: Lookup, timing_lookup: TimingLookup, activity_id: str) -> tuple[str, ...]:
-    """Return who owns what an activity belongs to."""
-    activity = timing_lookup.analysis.system.activities.get(activity_id)
-    return element_references.list_node_owners(lookup.architecture, activity.node) if activity else ()
 
 
 def _make_figures(lookup: Lookup, result: ChainResult) -> Iterator[KeyFigure]:
@@ -272,16 +280,19 @@ def _list_steps(lookup: Lookup, timing_lookup: TimingLookup, result: ChainResult
         return
     largest_term = max(result.terms, key=sum_known_parts)
     if advice.first_step:
-        yield _join_step(lookup, timing_lookup, advice.first_step, find_deciding_term(result))
-    yield _join_step(lookup, timing_lookup, advice.largest_parts, largest_term)
+        yield _join_step(lookup, inline_text.message_to_inlines(advice.first_step), find_deciding_term(result))
+    largest_parts = element_timing.link_names(lookup, timing_lookup, advice.largest_parts)
+    yield _join_step(lookup, largest_parts, largest_term)
 
 
-def _join_step(lookup: Lookup, timing_lookup: TimingLookup, text: str, term: ChainTerm) -> Inlines:
-    owners = inline_text.owner_links(lookup.architecture, _list_owners(lookup, timing_lookup, term.activity))
+def _join_step(lookup: Lookup, words: Inlines, term: ChainTerm) -> Inlines:
+    owners = inline_text.owner_links(
+        lookup.architecture, element_references.list_activity_owners(lookup, term.activity)
+    )
     place = element_references.place_run(lookup, term.at)
     parts = [part for part in (owners, (replace(place, muted=True),) if place else ()) if part]
     ending = inline_text.join_inlines(parts)
     return (
-        *inline_text.message_to_inlines(text),
+        *words,
         *((Text("", line_break=True), Text("Owner ", muted=True), *ending) if owners else ending),
     )

@@ -8,8 +8,7 @@ from collections.abc import Collection, Iterable, Iterator
 from archgen.model.node import Node
 from archgen.timing.analysis import ChainResult
 from archgen.timing.chains.chain_advice import advise_on_chain
-from archgen.timing.figures.response_tier import ResponseTier
-from archgen.timing.figures.timing_values import TimingValue
+from archgen.timing.figures.timing_values import ResponseTier, TimingValue
 from archgen.timing.figures.value_arithmetic import list_assumptions
 from archgen.timing.system.timing_system import Activity
 from archgen.views import element_references, inline_text
@@ -20,7 +19,9 @@ from archgen.views.timing.flow_tables import list_activities
 from archgen.views.timing.late_run_charts import make_late_run_figures
 from archgen.views.timing.timing_lookup import TimingLookup
 
-_ACTIVITY_NAME = re.compile(r"(?<![a-z0-9.])([a-z0-9.]++(?:_[a-z0-9.]++)++)")
+_SHOWN_PARTS = 6
+"""How many of those whose work a response waits for are named."""
+_NAME = re.compile(r"((?<![\w/.])/[\w/]++|(?<![\w/.])[a-z0-9.]++(?:_[a-z0-9.]++)++)")
 
 
 def make_whole_fact(lookup: Lookup, component_id: str) -> Inlines:
@@ -50,7 +51,7 @@ def make_chain_blocks(
             ),
         ),
         Fact("verdict", "Verdict", inline_text.to_inlines(chain_charts.describe_chain_verdict(result, timing_lookup))),
-        *_list_advice(timing_lookup, result),
+        *_list_advice(lookup, timing_lookup, result),
         Fact(
             "latest",
             "Reaction time and data age, at the latest",
@@ -86,7 +87,7 @@ def make_chain_blocks(
         Fact(
             "assumptions",
             "Assumptions",
-            _link_activities(timing_lookup, "; ".join(dict.fromkeys(describe_assumptions(timing_lookup, result)))),
+            link_names(lookup, timing_lookup, "; ".join(dict.fromkeys(describe_assumptions(timing_lookup, result)))),
         ),
     ]
     name = f"chains/{result.id}"
@@ -108,11 +109,11 @@ def make_chain_blocks(
     )
 
 
-def _list_advice(timing_lookup: TimingLookup, result: ChainResult) -> Iterator[Fact]:
+def _list_advice(lookup: Lookup, timing_lookup: TimingLookup, result: ChainResult) -> Iterator[Fact]:
     """Yield what takes most of a chain that does not surely meet its deadline, and what is missing."""
     advice = advise_on_chain(timing_lookup.analysis, result)
     if advice is not None:
-        yield Fact("why", "Why", inline_text.message_to_inlines(advice.largest_parts))
+        yield Fact("why", "Why", link_names(lookup, timing_lookup, advice.largest_parts))
         if advice.first_step:
             yield Fact("advice", "What to do", inline_text.message_to_inlines(advice.first_step))
 
@@ -137,13 +138,15 @@ def describe_assumptions(timing_lookup: TimingLookup, result: ChainResult) -> It
     )
 
 
-def _link_activities(timing_lookup: TimingLookup, sentence: str) -> Inlines:
-    """Return a sentence of the timing analysis with its activities as links to their nodes."""
-    activities = timing_lookup.analysis.system.activities
+def link_names(lookup: Lookup, timing_lookup: TimingLookup, sentence: str) -> Inlines:
+    """Return a sentence of the timing analysis with its activities as links to their nodes, and its topics as links."""
+    activities, topics = timing_lookup.analysis.system.activities, lookup.architecture.topics
     # Split at names: even positions are what stands between them. A name without `_` may be a word of the sentence.
-    parts = _ACTIVITY_NAME.split(sentence)
+    parts = _NAME.split(sentence)
     return tuple(
-        Text(part, ref=f"node:{activities[part].node}" if index % 2 and part in activities else None)
+        inline_text.topic_link(part)
+        if index % 2 and part in topics
+        else Text(part, ref=f"node:{activities[part].node}" if index % 2 and part in activities else None)
         for index, part in enumerate(parts)
         if part
     )
@@ -156,7 +159,7 @@ def _term_row(lookup: Lookup, timing_lookup: TimingLookup, result: ChainResult, 
         timing_tables.duration_cell(term.sampling),
         timing_tables.duration_cell(term.response),
         timing_tables.duration_cell(term.link),
-        _link_activities(timing_lookup, term.why),
+        link_names(lookup, timing_lookup, term.why),
         (place,) if (place := element_references.place_run(lookup, term.at)) else (),
     )
 
@@ -192,8 +195,35 @@ def _activity_facts(
     if response and response.worst.value is not None:
         tier = f" ({timing_tables.TIER_WORDS[response.tier]})" if timing_tables.TIER_WORDS[response.tier] else ""
         words = f"within {value_format.display_duration(response.worst)}{tier}"
-        yield Fact("activity", f"Response{suffix}", inline_text.to_inlines(words))
+        parts = _list_response_parts(timing_lookup, activity)
+        yield Fact(
+            "activity",
+            f"Response{suffix}",
+            (Text(words), *((Text(": "), *inline_text.join_first(parts, _SHOWN_PARTS)) if len(parts) > 1 else ())),
+        )
     yield from use_tables.list_use_facts(timing_lookup, activity, suffix)
+
+
+def _list_response_parts(timing_lookup: TimingLookup, activity: Activity) -> list[Inlines]:
+    """Return whose work a response is the sum of, its own first, then the most; empty where it is no plain sum."""
+    working = timing_lookup.response_terms.find_response(activity.id) if timing_lookup.response_terms else None
+    if working is None:
+        return []
+    times: dict[str, int] = {}
+    for term in working.terms:
+        for name, cost in term.parts:
+            times[name] = times.get(name, 0) + term.events.number * cost
+    if not sum(times.values()) == working.window == working.value or working.core_count > 1:
+        return []
+    tick = timing_lookup.analysis.system.tick
+    ranked = sorted(times.items(), key=lambda each: (each[0] != activity.id, -each[1], each[0]))
+    return [
+        (
+            Text(f"{value_format.display_duration(TimingValue(time * tick))} "),
+            *((Text("of its own"),) if name == activity.id else timing_tables.activity_link(timing_lookup, name)),
+        )
+        for name, time in ranked
+    ]
 
 
 def make_rate_fact(lookup: Lookup, nodes: Iterable[Node], component_id: str) -> Inlines:

@@ -37,6 +37,8 @@ class FlowRow(NamedTuple):
     read: Inlines
     reading: str
     deadlines: Inlines
+    type: Inlines
+    """The type of what flows, empty where it has none."""
 
 
 def list_activities(lookup: Lookup, nodes: Iterable[Node], component_id: str = "") -> list[Activity]:
@@ -69,6 +71,7 @@ def _make_row(lookup: Lookup, timing_lookup: TimingLookup, flow: ElementFlow, *,
     own, other = (arc.target, arc.source) if is_taken else (arc.source, arc.target)
     pace = flow.pace
     is_data = arc.role == "data"
+    output = lookup.architecture.outputs.get(arc.output)
     return FlowRow(
         _port_name(arc.input if is_taken else arc.output),
         _describe_end(lookup, timing_lookup, own, other, arc.link),
@@ -80,6 +83,7 @@ def _make_row(lookup: Lookup, timing_lookup: TimingLookup, flow: ElementFlow, *,
         timing_tables.duration_cell(sum_bounds((flow.since_sensing, flow.wait))) if is_data else (),
         _describe_reading(flow),
         inline_text.join_inlines(_link_chain(lookup, chain) for chain in flow.chains),
+        inline_text.type_link(output.type) if output and output.type else (),
     )
 
 
@@ -109,6 +113,9 @@ def _describe_topic(lookup: Lookup, topic_name: str) -> Inlines:
     if topic is None:
         return (Text(topic_name, code=True),)
     messages = inline_text.join_inlines((element_references.message_link(name),) for name in topic.messages)
+    size = lookup.format_size(topic).partition(" (")[0] if topic.flow == "topic" else ""
+    if messages and size not in {"", "unknown"}:
+        messages = (*messages, Text(f" {size}", muted=True))
     return inline_text.join_lines(((inline_text.topic_link(topic_name),), *((messages,) if messages else ())))
 
 

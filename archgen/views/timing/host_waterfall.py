@@ -101,7 +101,7 @@ def make_host_waterfall(lookup: Lookup, timing_lookup: TimingLookup, host_id: st
     load = timing_lookup.analysis.hosts.get(host_id)
     if load is None or load.cores is None or not load.utilisation.value:
         return None
-    shares = _sum_by_node(timing_lookup, load, load.cores)
+    shares = sum_by_node(timing_lookup, load, load.cores)
     total = sum((share.value or Fraction(0) for share in shares.values()), Fraction(0))
     whole = max(Fraction(1), total)
     room = 1 - _UNKNOWN_LENGTH if any(not share.complete for share in shares.values()) else 1.0
@@ -125,8 +125,8 @@ def _percent(share: Fraction) -> str:
     return f"{value_format.display_number(share * 100, 1)} %"
 
 
-def _sum_by_node(timing_lookup: TimingLookup, load: HostLoad, cores: int) -> dict[str, TimingValue]:
-    """Return the share of all cores that each node takes, the largest first."""
+def sum_by_node(timing_lookup: TimingLookup, load: HostLoad, cores: int) -> dict[str, TimingValue]:
+    """Return the share of so many cores that each node takes, the largest first."""
     sums: dict[str, TimingValue] = {}
     for name, value in load.activity_shares:
         activity = timing_lookup.analysis.system.activities.get(name)

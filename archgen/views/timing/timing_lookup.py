@@ -16,6 +16,7 @@ if TYPE_CHECKING:
     from archgen.timing.chains.element_flows import FlowFinder
     from archgen.timing.chains.fused_inputs import FusedInputs
     from archgen.timing.chains.use_case_times import UseCaseTimes, WholeBound
+    from archgen.timing.load.response_terms import ResponseTerms
 
 
 @dataclass(frozen=True, slots=True)
@@ -37,6 +38,8 @@ class TimingLookup:
     """How long the steps of use cases take, by id."""
     flows: FlowFinder | None = None
     """What elements take in and give out; None in a lookup of a test."""
+    response_terms: ResponseTerms | None = field(default=None, compare=False, repr=False)
+    """What responses are made of; None where the analysis keeps no state."""
     late_runs: Mapping[str, LateSchedule] = field(default_factory=dict)
     """The runs in which chains were late, by chain."""
 
@@ -48,6 +51,7 @@ def make_timing_lookup(analysis: Analysis, chains: Iterable[ChainResult] = ()) -
         activities_by_node[activity.node] = (*activities_by_node.get(activity.node, ()), activity)
     # Imported here because the engine takes time to load, and most commands show no timing.
     from archgen.timing.chains.fused_inputs import find_fused_inputs
+    from archgen.timing.load.response_terms import ResponseTerms
 
     return TimingLookup(
         analysis,
@@ -55,6 +59,7 @@ def make_timing_lookup(analysis: Analysis, chains: Iterable[ChainResult] = ()) -
         value_format.find_rate_origins(analysis),
         activities_by_node,
         find_fused_inputs(analysis),
+        response_terms=ResponseTerms(analysis.state) if analysis.state else None,
     )
 
 

@@ -69,6 +69,20 @@ def list_late_elements(lookup: Lookup, timing_lookup: TimingLookup) -> Iterator[
         )
 
 
+def list_troubled_chains(lookup: Lookup) -> list[ChainResult]:
+    """Return the chains that are not shown to meet their deadline, the worst first."""
+    return [
+        result
+        for result in (lookup.timing.chains if lookup.timing else ())
+        if result.verdict != "met" and not chain_status.lacks_only_deadline(result)
+    ]
+
+
+def list_silent_chains(lookup: Lookup) -> list[ChainResult]:
+    """Return the chains that are not shown to meet their deadline, and that no finding is about."""
+    return [result for result in list_troubled_chains(lookup) if result.id not in lookup.findings_of]
+
+
 def _describe_late_chain(result: ChainResult, timing_lookup: TimingLookup) -> Iterator[str]:
     """Yield by how much a chain is late, what takes most and why, and what is missing."""
     advice = advise_on_chain(timing_lookup.analysis, result)

@@ -271,17 +271,17 @@ def find_period_step(pace: analysis.EventPace | None) -> PeriodStep:
 
 def format_rate_words(pace: analysis.EventPace | None) -> str:
     """Format a rate on one line: `10 Hz · 100 ms`, `<= 10 Hz · >= 100 ms, event`, `on demand`, `?`."""
-    return _add_behaviour(_format_rate_figure(pace, " · "), pace)
+    return _add_behaviour(_format_rate_figure(pace), pace)
 
 
 def format_short_rate(pace: analysis.EventPace | None) -> str:
     """Format a rate on one line, of one that is bounded the bound only: `10 Hz · 100 ms`, `<= 10 Hz, event`."""
-    return _add_behaviour(_format_short_figure(pace, " · "), pace)
+    return _add_behaviour(_format_short_figure(pace), pace)
 
 
 def format_box_lines(pace: analysis.EventPace | None) -> tuple[str, ...]:
     """Format a rate for a box: rate and period, then the behaviour unless it is periodic."""
-    rate_text = shorten_text(_format_short_figure(pace, " · "))
+    rate_text = shorten_text(_format_short_figure(pace))
     # A long figure would widen the box: rate and period then get a line each.
     if len(rate_text) > _BOX_LINE_LENGTH:
         rate_text = rate_text.replace(" · ", "\n")
@@ -292,17 +292,17 @@ def _add_behaviour(figure: str, pace: analysis.EventPace | None) -> str:
     return ", ".join(word for word in (figure, _behaviour_word(pace)) if word) or "?"
 
 
-def _format_rate_figure(pace: analysis.EventPace | None, separator: str) -> str:
+def _format_rate_figure(pace: analysis.EventPace | None) -> str:
     """Format rate and period; empty where the rate is unknown or zero."""
     if pace is None or not pace.rate.value:
         return ""
-    return f"{display_rate(pace.rate)}{separator}{display_period(pace.rate)}"
+    return f"{display_rate(pace.rate)} · {display_period(pace.rate)}"
 
 
-def _format_short_figure(pace: analysis.EventPace | None, separator: str) -> str:
+def _format_short_figure(pace: analysis.EventPace | None) -> str:
     """Format rate and period; at most 10 Hz is at least 100 ms, which need not be said again."""
     if pace is None or not pace.rate.value or not bound_sign(pace.rate):
-        return _format_rate_figure(pace, separator)
+        return _format_rate_figure(pace)
     return display_rate(pace.rate)
 
 

@@ -172,7 +172,20 @@
     head.append(linked(entry));
     if (entry.remark) head.append(element("span", { className: "remark", textContent: entry.remark }));
     const line = element("tr", { className: entry.begins && folding && !entry.folded ? "begins" : "" }, head);
-    across.forEach((_, column) => line.append(drawCell(row, column)));
+    // Of many columns empty cells beside one another are one: a hundred groups squared are ten thousand cells.
+    const joins = across.length > DENSE;
+    let gap = null;
+    across.forEach((_, column) => {
+      const cell = drawCell(row, column);
+      const isEmpty = !cell.className;
+      if (isEmpty && gap && joins) {
+        gap.colSpan += 1;
+        gap.className = "gap";
+        return;
+      }
+      gap = isEmpty ? cell : null;
+      line.append(cell);
+    });
     return line;
   }
 
@@ -265,7 +278,7 @@
     clearTimeout(timer);
     card.hidden = true;
     shownFor = null;
-    box.querySelectorAll(".lit").forEach((lit) => lit.classList.remove("lit"));
+    box.querySelectorAll(".lit, .crossed").forEach((lit) => lit.classList.remove("lit", "crossed"));
   }
 
   function showCard(link) {
@@ -284,9 +297,22 @@
     if (way) card.append(element("p", { className: "loop", textContent: "Loop: " + [down[row], ...way.slice(0, -1).map((at) => down[at])].map((entry) => entry.title).join(" → ") + " → back" }));
     const cell = link.parentElement;
     [...cell.parentElement.children].slice(1).forEach((other) => other.classList.add("lit"));
-    for (const line of box.querySelectorAll("tr")) line.children[column + 1]?.classList.add("lit");
+    for (const line of box.querySelectorAll("tr")) lightColumn(line, column);
     card.hidden = false;
     place(cell.getBoundingClientRect());
+  }
+
+  // The cell of a line in a column; of several in one, the place of that column alone.
+  function lightColumn(line, column) {
+    let at = -1; // the head of the row
+    for (const cell of line.children) {
+      if (at <= column && column < at + cell.colSpan) {
+        cell.classList.add(cell.colSpan > 1 ? "crossed" : "lit");
+        cell.style.setProperty("--from", column - at);
+        return;
+      }
+      at += cell.colSpan;
+    }
   }
 
   // Each thing once, with its ends where the row or the column stands for several.

@@ -3,6 +3,7 @@
 "use strict";
 (function () {
   const root = document.documentElement;
+  const saverAddress = new URL("save.js", document.currentScript.src).href;
 
   function element(name, properties, ...children) {
     const made = Object.assign(document.createElement(name), properties);
@@ -69,13 +70,95 @@
     }
   }
 
-  function sortable(table, rows, name) {
+  const PAGE_ROWS = 100;
+
+  // Rows behind the first ones of a long table wait as text: a browser takes tens of thousands of cells badly.
+  function takeRest(table) {
+    const rest = table.closest(".table").querySelector("noscript.rest");
+    if (!rest) return [];
+    const held = document.createElement("template");
+    held.innerHTML = rest.textContent;
+    rest.remove();
+    return [...held.content.querySelectorAll("tbody > tr")];
+  }
+
+  // All rows of a table in the order and among the words that are asked for; of a long one a page is shown.
+  function listRows(table, suffix) {
+    const shown = [...table.tBodies[0].rows];
+    const given = [...shown, ...takeRest(table)];
+    const isLong = given.length > shown.length;
+    let rows = given, words = [], page = 0, size = isLong ? PAGE_ROWS : Infinity;
+    const list = {
+      given,
+      found: given.length,
+      onDraw: () => {},
+      sort(at, down) {
+        rows = at < 0 ? given : [...given].sort(compare(at, down));
+        list.turn(0);
+      },
+      filter(wanted) {
+        words = wanted;
+        list.turn(0);
+      },
+      matching: () => rows.filter((row) => {
+        const said = row.textContent.toLowerCase();
+        return words.every((word) => said.includes(word));
+      }),
+      turn(wanted) {
+        const matching = list.matching();
+        list.found = matching.length;
+        page = Math.max(0, Math.min(wanted, Math.ceil(matching.length / size) - 1)) || 0;
+        if (isLong) table.tBodies[0].replaceChildren(...matching.slice(page * size || 0, (page + 1) * size));
+        else {
+          for (const row of rows) row.hidden = !matching.includes(row);
+          table.tBodies[0].append(...rows);
+        }
+        if (table.classList.contains("stood")) standRows(table);
+        list.onDraw(page, size);
+      },
+      // The page on which a row stands that an address leads to.
+      turnTo(id) {
+        const at = list.matching().findIndex((row) => row.id === id || row.querySelector("#" + CSS.escape(id)));
+        if (at < 0) return;
+        list.turn(Math.floor(at / size));
+        document.getElementById(id)?.scrollIntoView();
+      },
+    };
+    if (!isLong) return list;
+    const place = element("output", {});
+    const back = element("button", { type: "button", textContent: "‹ Back" });
+    const on = element("button", { type: "button", textContent: "Next ›" });
+    const all = element("button", { type: "button" });
+    const pager = element("div", { className: "pager" }, back, place, on, all);
+    const go = (wanted) => {
+      list.turn(wanted);
+      remember("page" + suffix, page ? String(page + 1) : "");
+    };
+    back.addEventListener("click", () => go(page - 1));
+    on.addEventListener("click", () => go(page + 1));
+    all.addEventListener("click", () => {
+      size = size === Infinity ? PAGE_ROWS : Infinity;
+      go(0);
+    });
+    list.onDraw = () => {
+      const last = Math.min((page + 1) * size, list.found);
+      place.textContent = list.found ? `${(page * size || 0) + 1} to ${last} of ${list.found}` : "none";
+      back.disabled = !page;
+      on.disabled = last >= list.found;
+      all.textContent = size === Infinity ? "By pages" : "Show all";
+    };
+    table.closest(".table").append(pager);
+    list.turn(0);
+    return list;
+  }
+
+  function sortable(table, list, name) {
     const heads = [...table.tHead.rows[0].cells];
     const titles = heads.map((head) => head.textContent);
     function sort(at, down) {
       heads.forEach((other) => (other.ariaSort = null));
       if (at >= 0) heads[at].ariaSort = down ? "descending" : "ascending";
-      table.tBodies[0].append(...(at < 0 ? rows : [...rows].sort(compare(at, down))));
+      list.sort(at, down);
     }
     heads.forEach((head, at) => {
       const control = element("button", { type: "button", className: "sort" }, ...head.childNodes);
@@ -89,7 +172,7 @@
     return (wanted) => sort(titles.indexOf(wanted.replace(/^-/, "")), wanted.startsWith("-"));
   }
 
-  function filterable(table, rows, name) {
+  function filterable(table, list, name) {
     const caption = table.caption.textContent;
     const count = element("output", { className: "muted" });
     // Not completed by the browser: it would bring back the words after the rows were shown.
@@ -97,34 +180,78 @@
     field.autocomplete = "off";
     function filter() {
       const wanted = field.value.toLowerCase().split(/\s+/).filter(Boolean);
-      let shown = 0;
-      for (const row of rows) {
-        const words = row.textContent.toLowerCase();
-        row.hidden = !wanted.every((word) => words.includes(word));
-        if (!row.hidden) shown += 1;
-      }
-      count.textContent = wanted.length ? shown + " of " + rows.length : "";
+      list.filter(wanted);
+      count.textContent = wanted.length ? list.found + " of " + list.given.length : "";
     }
     field.addEventListener("input", () => {
       filter();
       remember(name, field.value.trim());
     });
-    table.closest(".table").prepend(element("div", { className: "filter" }, field, count));
+    const csv = element("button", { type: "button", className: "csv", textContent: "Copy as CSV", ariaLabel: "Copy as CSV: " + caption });
+    csv.addEventListener("click", () => {
+      copy(writeCsv(table, list.matching())).then(() => {
+        csv.textContent = "Copied";
+        setTimeout(() => (csv.textContent = "Copy as CSV"), 1500);
+      });
+    });
+    table.closest(".table").prepend(element("div", { className: "filter" }, field, csv, count));
     return (words) => {
       field.value = words;
       filter();
     };
   }
 
+  // What a spreadsheet would take for a formula begins with an apostrophe, as in `archgen list --format csv`.
+  function writeCsv(table, rows) {
+    return [table.tHead.rows[0], ...rows].map((row) =>
+      [...row.cells].map((cell) => {
+        const lines = cell.cloneNode(true);
+        for (const line of lines.querySelectorAll("br")) line.replaceWith("\n");
+        for (const control of lines.querySelectorAll("button.copy")) control.remove();
+        const said = lines.textContent.replace(/\u200b/g, "").trim();
+        return '"' + (/^[=+\-@]/.test(said) ? "'" : "") + said.replace(/"/g, '""') + '"';
+      }).join(",") + "\r\n").join("");
+  }
+
+  // A cell that lists a thousand names shows the first ones. Tables with a filter keep all: it looks for words in them.
+  const CELL_NAMES = 60;
+  const unfolding = new Set();
+  function foldCells(table) {
+    for (const cell of table.tBodies[0].querySelectorAll("td")) {
+      const names = [...cell.children];
+      if (names.length <= CELL_NAMES) continue;
+      const rest = new Range();
+      rest.setStartBefore(names[CELL_NAMES / 2]);
+      rest.setEndAfter(cell.lastChild);
+      const held = rest.extractContents();
+      const unfold = element("button", { type: "button", textContent: names.length - CELL_NAMES / 2 + " more" });
+      const show = () => {
+        unfolding.delete(show);
+        const next = held.querySelector("a");
+        unfold.replaceWith(held);
+        next?.focus();
+      };
+      unfold.addEventListener("click", show);
+      unfolding.add(show);
+      cell.append(unfold);
+    }
+  }
+  matchMedia("print").addEventListener("change", () => unfolding.forEach((show) => show()));
+
   const obey = new Map();
+  const lists = [];
   function equipTables() {
     obey.clear();
+    lists.length = 0;
     // Cards are short, and in the order that matters.
-    [...document.querySelectorAll(".table table")].filter((table) => !table.closest(".card")).forEach((table, at) => {
-      const rows = [...table.tBodies[0].rows];
+    [...document.querySelectorAll(".table table")].filter((table) => !table.closest(".card, noscript")).forEach((table, at) => {
       const suffix = at ? at + 1 : "";
-      if (rows.length > 2) obey.set("sort" + suffix, sortable(table, rows, "sort" + suffix));
-      if (rows.length > 9) obey.set("q" + suffix, filterable(table, rows, "q" + suffix));
+      const list = listRows(table, suffix);
+      lists.push(list);
+      if (list.given.length > 2) obey.set("sort" + suffix, sortable(table, list, "sort" + suffix));
+      if (list.given.length < 10) foldCells(table);
+      if (list.given.length > 9) obey.set("q" + suffix, filterable(table, list, "q" + suffix));
+      if (list.given.length > PAGE_ROWS) obey.set("page" + suffix, (wanted) => list.turn(Number(wanted || 1) - 1));
     });
   }
   equipTables();
@@ -132,7 +259,13 @@
   function obeyAddress() {
     const wanted = new URLSearchParams(location.search);
     for (const [name, show] of obey) show(wanted.get(name) || "");
+    showTarget();
   }
+  function showTarget() {
+    const id = decodeURIComponent(location.hash.slice(1));
+    if (id && !document.getElementById(id)) for (const list of lists) list.turnTo(id);
+  }
+  addEventListener("hashchange", showTarget);
   addEventListener("pageshow", obeyAddress);
   if (location.search) obeyAddress();
 
@@ -193,7 +326,9 @@
     return Promise.resolve();
   }
 
-  for (const place of document.querySelectorAll("code.place")) {
+  // Those of rows on further pages, too.
+  const held = lists.flatMap((list) => list.given).flatMap((row) => [...row.querySelectorAll("code.place")]);
+  for (const place of new Set([...document.querySelectorAll("code.place"), ...held])) {
     if (place.closest("a")) continue;
     const control = element("button", { type: "button", className: "copy", textContent: "Copy", ariaLabel: "Copy " + place.textContent });
     control.addEventListener("click", () => {
@@ -206,7 +341,22 @@
   }
 
   // --- pictures: the whole window, with wheel, drag and keys ----------------------------------------------------
-  function look(svg, caption) {
+  // What saves pictures is read when somebody asks for it.
+  function readSaver() {
+    if (globalThis.archgenSavePicture) return Promise.resolve();
+    return new Promise((done, failed) => {
+      document.head.append(element("script", { src: saverAddress, onload: done, onerror: failed }));
+    });
+  }
+
+  async function save(view, name, format) {
+    await readSaver();
+    const { x, y, width, height } = view.viewBox.baseVal;
+    const ground = getComputedStyle(document.body).backgroundColor;
+    await archgenSavePicture([...view.children], { left: x, top: y, right: x + width, bottom: y + height }, ground, name, format);
+  }
+
+  function look(svg, caption, name) {
     let view = svg.cloneNode(true);
     const stage = element("div", { className: "stage", tabIndex: 0 }, view);
     stage.setAttribute("role", "group");
@@ -219,7 +369,12 @@
         return tool;
       }
     );
-    const head = element("div", { className: "tools" }, element("span", { textContent: caption }), ...tools, close);
+    const savers = ["SVG", "PNG"].map((format) => {
+      const saver = element("button", { type: "button", textContent: format, ariaLabel: "Save as " + format });
+      saver.addEventListener("click", () => save(view, name, format.toLowerCase()).catch(() => (saver.textContent = "Too large")));
+      return saver;
+    });
+    const head = element("div", { className: "tools" }, element("span", { textContent: caption }), ...savers, ...tools, close);
     const dialog = element("dialog", { className: "look", ariaLabel: caption }, head, stage);
     let scale = 1, x = 0, y = 0;
     const place = () => (view.style.transform = `translate(${x}px, ${y}px) scale(${scale})`);
@@ -302,14 +457,17 @@
       if (!svg) continue;
       const caption = captionOf(figure);
       const open = figure.querySelector("a.whole");
+      const name = new URL(open.href).pathname.replace(/^.*\/figures\/|\.svg$/g, "").replaceAll("/", "-");
       const control = element("button", { type: "button", className: "closer", ariaLabel: "Look closer: " + caption });
       control.textContent = "Look closer";
-      control.addEventListener("click", () => look(svg, caption));
+      control.addEventListener("click", () => look(svg, caption, name));
       open.before(control, " ");
       figure.classList.add("zooms");
-      figure.querySelector(".canvas").addEventListener("click", (event) => {
-        if (!event.target.closest("a")) look(svg, caption);
-      });
+      for (const canvas of figure.querySelectorAll(".canvas")) {
+        canvas.addEventListener("click", (event) => {
+          if (!event.target.closest("a")) look(canvas.querySelector("svg"), caption, name);
+        });
+      }
     }
   }
   equipPictures();

@@ -21,6 +21,7 @@ from archgen.timing.run_analysis import analyse_for_chains
 from archgen.views.agreement.partner_agreement import make_agreement
 from archgen.views.agreement.signed_terms import list_departures
 from tests.agreeing import view
+from tests.property_sizes import list_seeds
 
 PROJECT = """\
 project: {{id: p, title: P}}
@@ -105,7 +106,7 @@ def _is_signed(signed: pipeline.CheckedProject, later: pipeline.CheckedProject) 
     )
 
 
-@pytest.mark.parametrize("seed", range(6))
+@pytest.mark.parametrize("seed", list_seeds(8))
 def test_what_is_no_longer_as_signed_breaks_somebody(seed: int, tmp_path: Path) -> None:
     random_source = random.Random(seed)  # noqa: S311 - a test's dice
     left = number = 0

@@ -12,7 +12,7 @@ import pytest
 
 from archgen.bringup.program_names import (
     ProgramNames,
-    choose_own_name,
+    choose_own_names,
     group_by_program,
     group_endpoints,
     index_endpoints,
@@ -221,14 +221,14 @@ def test_trap_1_generated_code_and_launch_files_give_the_names_of_the_record(
         architecture = derived(text)
         program_names, endpoints = ProgramNames(architecture, 2), index_endpoints(architecture)
         for nodes in group_by_program(architecture, architecture.nodes.values()).values():
-            for (_, _, key), ends in group_endpoints(nodes, endpoints).items():
-                said = choose_own_name(key, ends, is_shared=len(nodes) > 1)
-                for end in ends:
+            groups = group_endpoints(nodes, endpoints)
+            for place, said in choose_own_names(architecture, groups).items():
+                for end in groups[place]:
                     node = architecture.nodes[end.node]
                     rules = [f"{own}:={name}" for own, name in program_names.find_remaps(node).items()]
                     words = [*node.arguments, *_write_words(" ".join(rules))] if rules else [*node.arguments]
-                    place = {"name": node.name, "namespace": node.namespace}
-                    cases.append({**place, "words": ["n", *words], "written": [said]})
+                    names = {"name": node.name, "namespace": node.namespace}
+                    cases.append({**names, "words": ["n", *words], "written": [said]})
                     expected.append(end.name)
     answers = ask_ros(_ROS_2_NAMES, make_ros_python(), ros_environment(27, tmp_path), cases)
     assert [each["names"][f"topic {case['written'][0]}"] for each, case in zip(answers, cases, strict=True)] == expected

@@ -15,11 +15,13 @@ _MAY_READ = (
     "archgen.compare.kinds.",
     "archgen.plugins.ros.launch.",
     "archgen.plugins.ros.running_graph.",
+    "archgen.plugins.ros.workspace.",
 )
 _WRITERS = {
     "archgen.bringup.start_commands",
     "archgen.model.parameter_values",
     "archgen.plugins.ros_code.launch_entries",
+    "archgen.emit.workspace.own_code",
 }
 """What only writes a parameter, or knows that ROS declares it."""
 

@@ -58,7 +58,7 @@ def test_trap_1_the_generator_folds_all_rules_into_one_for_each_end(derived: Der
     architecture = derived(SHARED_PROGRAM)
     names = ProgramNames(architecture, 2)
     folded = {each.id: names.find_remaps(each) for each in architecture.nodes.values()}
-    assert folded == {"one": {"safety": "/raw1"}, "two": {"safety": "/raw2"}, "three": {}}
+    assert folded == {"one": {"safety": "/raw1"}, "two": {"safety": "/raw2"}, "three": {"safety": "/raw3"}}
     assert {end.node: end.name for end in architecture.endpoints} == {"one": "/raw1", "two": "/raw2", "three": "/raw3"}
 
 
@@ -78,8 +78,8 @@ nodes:
 def test_trap_1_a_swap_is_not_swapped_back_in_generated_code(derived: Derived) -> None:
     architecture = derived(SWAP)
     assert [each.name for each in architecture.endpoints] == ["/y", "/x"]
-    # The program says the names on the wire itself.
-    assert ProgramNames(architecture, 2).find_remaps(architecture.nodes["sup"]) == {"/tf": "tf"}
+    remaps = ProgramNames(architecture, 2).find_remaps(architecture.nodes["sup"])
+    assert remaps == {"o": "/y", "p": "/x", "/tf": "tf"}
 
 
 def test_trap_2_a_generated_reader_takes_the_wire_name_of_its_writer(derived: Derived) -> None:

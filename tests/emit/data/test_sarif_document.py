@@ -158,6 +158,7 @@ def test_what_github_would_not_take_is_said(count: int, said: list[str]) -> None
     assert list(sarif_document.check_github_limits("{}", count)) == said
 
 
+@pytest.mark.slow
 def test_a_file_that_is_too_large_is_said() -> None:
     text = random.Random(1).randbytes(11_000_000).hex()  # noqa: S311 - what cannot be packed smaller than that
     (said,) = sarif_document.check_github_limits(text, 1)

@@ -385,6 +385,7 @@ def test_a_long_chain_of_parts_is_refused() -> None:
         report(packed(parts), Outline("T"))
 
 
+@pytest.mark.slow
 def test_a_damaged_template_is_refused_or_used_but_never_a_traceback() -> None:
     outline = Outline("T", facts=(("Version", (Text("1"),)),), sections=(Section("a", "A"),))
     source = zipfile.ZipFile(io.BytesIO(template_named("cover")))

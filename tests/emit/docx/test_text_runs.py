@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from archgen.emit.docx.text_metrics import measure_code, measure_word
 from archgen.emit.docx.text_pieces import RunSetting
+from archgen.emit.text_metrics import measure_code, measure_word
 from archgen.views.shapes import Text
 
 NAME = Text("ramcip_msgs/msg/TrackedPeople", code=True)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from itertools import pairwise
 
 import pytest
 
@@ -181,4 +182,23 @@ def test_figures_are_short_and_tips_keep_all_digits() -> None:
     attributes = "\n".join(str(part.attributes) for part in scene(chart).parts)
     assert all(text in attributes for text in ("≥ 2.62 s", "after 2.63 s.", "deadline 8 s"))
     assert "2621.667 ms" in attributes
+    ticks = [part.attributes["label"] for part in scene(chart).parts if re.fullmatch(r"a\d+", part.name)]
+    assert [re.sub("<[^>]*>|[<>]", "", tick) for tick in ticks][-2:] == ["6", "8 s"]
     assert ">= 2" not in attributes
+
+
+def test_what_is_unknown_pushes_the_bars_behind_it_and_ends_the_axis() -> None:
+    bars = (
+        ChartBar("a", (BarSegment(100, "response"), BarSegment(None, "link"))),
+        ChartBar("b", (BarSegment(None, "response"),), start=100, gaps=1),
+        ChartBar("c", (BarSegment(50, "response"),), start=100, gaps=2),
+    )
+    chart = Chart("c", "C", "ms", bars, limit=(120, "deadline"))
+    parts = {part.name: part for part in chart_layout.lay_out_chart(chart, lambda _: None).parts}
+    ends = [parts[name].rectangle for name in ("b0.0", "b0.q", "b1.q", "b2.0")]
+    for one, other in pairwise(ends):
+        assert one[2] - 0.1 <= other[0] <= one[2] + 3
+    texts = [part.attributes["label"] for name, part in parts.items() if name[0] == "a"]
+    assert texts[-1].count("ms + ?") == 1
+    assert "limit" not in parts, "a deadline behind what is unknown is only named"
+    assert "deadline →" in parts["limits"].attributes["label"]

@@ -11,7 +11,7 @@ from archgen.views.picture_shapes import Arrow, Box, Graph
 def test_widths_of_arrows_are_explained_with_their_numbers() -> None:
     boxes = (Box("a", "A"), Box("b", "B"))
     arrows = tuple(Arrow(str(count), "a", "b", str(count), count=count) for count in (1, 3, 7))
-    graph = add_legend_keys(Graph("g", "G", "overview", boxes, arrows, kind="overview"))
+    graph = add_legend_keys(Graph("g", "G", "two-step", boxes, arrows, kind="components"))
     drawn = add_graph_legend(Scene(), graph)
     # A sentence, no samples: three of them took more room than all other forms of a large picture.
     assert [part.name for part in drawn.parts if part.kind == "label"] == ["notes"]

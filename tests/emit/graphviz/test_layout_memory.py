@@ -7,12 +7,13 @@ from pathlib import Path
 
 import pytest
 
+from archgen.cache.layout_memory import LayoutMemory
 from archgen.emit.graphviz import graph_drawing, two_step_layout
-from archgen.emit.graphviz.line_crossings import LayoutMemory
-from archgen.views.graphs import draw_components
+from archgen.views.graphs import draw_components, group_columns
 from archgen.views.lookup import make_lookup
-from archgen.views.picture_shapes import Graph
+from archgen.views.picture_shapes import Arrow, Box, Graph
 from tests.architectures import robot
+from tests.property_sizes import mark_further_samples
 
 GRAPH = draw_components(make_lookup(robot(1)))
 
@@ -21,6 +22,16 @@ def retitle(graph: Graph, title: str) -> Graph:
     """Return the graph with another title of its first frame."""
     first, *others = graph.clusters
     return replace(graph, clusters=(replace(first, title=title), *others))
+
+
+GROUPS = Graph(
+    "overview",
+    "Groups",
+    "overview",
+    tuple(Box(name, name.upper()) for name in "abc"),
+    (Arrow("ab", "a", "b"), Arrow("ba", "b", "a", count=3), Arrow("bc", "b", "c")),
+    kind="overview",
+)
 
 
 def no_tries(*_: object) -> None:
@@ -60,16 +71,21 @@ def test_what_decides_the_layout_is_tried_anew(change: Graph, tmp_path: Path, mo
         graph_drawing.draw_picture(change, {}, ("svg",), memory=memory)
 
 
-@pytest.mark.parametrize("damage", [b"", b"null", b'["rankdir"', b"3", b"\xff", b'["a", 3]', b'["a", ["b"], 1]'])
-def test_a_damaged_file_is_not_taken(damage: bytes, tmp_path: Path) -> None:
+@pytest.mark.parametrize(
+    "damage", mark_further_samples([b'["a", ["b"], 1]', b"", b"null", b'["rankdir"', b"3", b"\xff", b'["a", 3]'])
+)
+@pytest.mark.parametrize("graph", [GRAPH, GROUPS], ids=["frames", "columns"])
+def test_a_damaged_file_is_not_taken(graph: Graph, damage: bytes, tmp_path: Path) -> None:
     memory = LayoutMemory(tmp_path, "program")
-    memory.keep_choice("problem", ("rankdir=LR", ["a -> b;"]))
-    assert memory.recall_choice("problem") == ("rankdir=LR", ["a -> b;"])
+    drawn = graph_drawing.draw_picture(graph, {}, ("svg",), memory=memory)
     (file,) = tmp_path.iterdir()
     file.write_bytes(damage)
-    assert memory.recall_choice("problem") is None
+    assert graph_drawing.draw_picture(graph, {}, ("svg",), memory=memory) == drawn
 
 
-def test_without_a_folder_nothing_is_remembered() -> None:
-    LayoutMemory().keep_choice("problem", ("", []))
-    assert LayoutMemory().recall_choice("problem") is None
+def test_columns_of_groups_are_searched_once(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    memory = LayoutMemory(tmp_path, "program")
+    drawn = graph_drawing.draw_picture(GROUPS, {}, ("svg",), memory=memory)
+    monkeypatch.setattr(group_columns, "_Search", no_tries)
+    group_columns._arrange.cache_clear()  # noqa: SLF001 - as another process has it
+    assert graph_drawing.draw_picture(GROUPS, {}, ("svg",), memory=memory) == drawn

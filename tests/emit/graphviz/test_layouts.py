@@ -23,7 +23,7 @@ from archgen.views.lookup import make_lookup
 from archgen.views.picture_shapes import Arrow, Box, Cluster, Graph
 from tests.architectures import generated, robot
 from tests.emit.graphviz.overlaps import overlapping_parts
-from tests.property_sizes import list_seeds
+from tests.property_sizes import list_seeds, mark_further_samples
 from tests.timings import timed
 
 ROBOT = make_all_graphs(robot(1))
@@ -63,7 +63,7 @@ def test_pictures_of_a_robot(graph: Graph) -> None:
     assert sum(arrow.count for arrow in graph.arrows) == graph.asked
 
 
-@pytest.mark.parametrize("example", ["example_ramcip", "examples/first_robot"])
+@pytest.mark.parametrize("example", mark_further_samples(["examples/first_robot", "example_ramcip"]))
 def test_pictures_of_timing(example: str) -> None:
     architecture = pipeline.check_project(Path(__file__).parents[3] / example).architecture
     graphs = [g for g in make_all_graphs(architecture, timed=timed(architecture)) if g.id.startswith("timing")]
@@ -71,7 +71,7 @@ def test_pictures_of_timing(example: str) -> None:
     assert [(graph.id, wrong) for graph in graphs if (wrong := faults(graph))] == []
 
 
-@pytest.mark.parametrize("example", ["example_ramcip", "examples/first_robot"])
+@pytest.mark.parametrize("example", mark_further_samples(["examples/first_robot", "example_ramcip"]))
 def test_pictures_of_the_examples(example: str) -> None:
     checked = pipeline.check_project(Path(__file__).parents[3] / example)
     graphs = make_all_graphs(checked.architecture, findings=checked.findings)
@@ -91,7 +91,7 @@ def test_two_hundred_groups(seed: int) -> None:
 def test_other_architectures_as_a_whole(seed: int) -> None:
     architecture = generated(seed, 2 + 2 * seed, 9, 30 + 10 * seed)
     whole = [graph for graph in make_all_graphs(architecture) if graph.layout in {"two-step", "overview"}]
-    assert [graph.id for graph in whole] == ["overview", "components", "ros", "hosts"]
+    assert [graph.id for graph in whole] == ["overview", "overview_upright", "components", "ros"]
     assert [(graph.id, faults(graph)) for graph in whole if faults(graph)] == []
 
 
@@ -119,7 +119,14 @@ HOSTILE = (
 
 def hostile(layout: str) -> Graph:
     boxes = tuple(
-        Box(f"b{at}", text, (text,), ref=text, tooltip=text, cluster=f"c{at % 2}" if layout != "flow" else None)
+        Box(
+            f"b{at}",
+            text,
+            (text,),
+            ref=text,
+            tooltip=text,
+            cluster=f"c{at % 2}" if layout not in {"flow", "overview"} else None,
+        )
         for at, text in enumerate(HOSTILE)
     )
     if layout == "group":
@@ -139,7 +146,7 @@ def hostile(layout: str) -> Graph:
         layout,  # type: ignore[arg-type]
         boxes,
         arrows,
-        () if layout == "flow" else clusters,
+        () if layout in {"flow", "overview"} else clusters,
         notes=HOSTILE[:3],
         alt=HOSTILE[3],
         kind="view",

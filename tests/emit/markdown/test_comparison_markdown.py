@@ -232,6 +232,7 @@ def test_what_does_not_fit_is_counted(told: Told, most: int) -> None:
     assert text.count("```") % 2 == 0
 
 
+@pytest.mark.slow
 def test_a_whole_comment_keeps_to_the_limit_of_the_host(told: Told) -> None:
     many = "".join(
         f'      part{at}: {{title: "{"&" * 60} {at}", inputs: {{image: camera.image}}}}\n' for at in range(900)

@@ -12,6 +12,7 @@ from archgen.emit.file_tree import FileTree, write_tree
 from archgen.emit.site import build_site as make_site
 from archgen.views import shapes
 from tests.browser_pages import OpenPage, judge_with_axe
+from tests.emit.site.conftest import drawn
 from tests.outside_tools import ask_nu_checker
 from tests.property_sizes import mark_further_samples
 
@@ -184,7 +185,7 @@ def test_links_in_pictures_work(visit: OpenPage) -> None:
     page.wait_for_url("**/components/g1.c2.html")
 
 
-def test_a_picture_can_be_looked_at_closely(visit: OpenPage) -> None:
+def test_a_picture_can_be_looked_at_closely(visit: OpenPage, tmp_path: Path) -> None:
     page = visit("groups/g1.html")
     page.get_by_role("button", name="Look closer").click()
     drawing = page.locator("dialog svg")
@@ -194,6 +195,21 @@ def test_a_picture_can_be_looked_at_closely(visit: OpenPage) -> None:
     assert before is not None
     assert after is not None
     assert after["width"] == pytest.approx(before["width"] * 1.25)
+    page.keyboard.press("0")
+    for form in ("SVG", "PNG"):
+        with page.expect_download() as download:
+            page.get_by_role("button", name=f"Save as {form}").click()
+        assert download.value.suggested_filename == f"groups-g1.{form.lower()}"
+        download.value.save_as(tmp_path / form)
+    text = (tmp_path / "SVG").read_text("utf-8")
+    assert all(word not in text for word in ("<a", "class=", "var(", "href"))
+    assert text.count("textLength=") == text.count("<text")
+    # A picture of its own keeps the room, colours and words that it has in the page.
+    page.goto((tmp_path / "SVG").rename(tmp_path / "saved.svg").as_uri())
+    assert page.evaluate("getComputedStyle(document.querySelector('polygon')).fill") == "rgb(255, 255, 255)"
+    page.go_back()
+    assert (tmp_path / "PNG").read_bytes().startswith(b"\x89PNG")
+    page.get_by_role("button", name="Look closer").click()
     page.keyboard.press("Escape")
     # The page takes the dialog away when the browser has told it of the closing.
     page.locator("dialog").wait_for(state="detached")
@@ -214,6 +230,73 @@ def test_tables_sort_and_filter(visit: OpenPage) -> None:
     page.get_by_role("searchbox").fill("person topic_8")
     assert page.evaluate(column) == ["/robot/topic_85", "/robot/topic_8"]
     assert page.locator("output").inner_text() == "2 of 138"
+
+
+def test_a_long_table_is_shown_by_pages_and_sorted_filtered_and_copied_as_a_whole(
+    visit: OpenPage, browser: Browser, tmp_path: Path
+) -> None:
+    rows = tuple(
+        ((shapes.Text(f"n{at}"),), (shapes.Text("=x" if at == 7 else "a.yaml:1", is_place=at != 7, code=at != 7),))
+        for at in range(380)
+    )
+    anchors = tuple(f"component:n{at}" for at in range(380))
+    table = shapes.Table("t", "Many", (shapes.Column("Name"), shapes.Column("What")), rows, anchors)
+    start = shapes.Page("index.html", "page:index", "R", "overview", shapes.Section("page:index", "R", (table,)))
+    write_tree(
+        make_site((start,), {}, title="R", revision="", notices=(), chapter_files=lambda _: None), tmp_path / "site"
+    )
+    page = visit("index.html", root=tmp_path / "site")
+    names = "[...document.querySelectorAll('tbody tr')].map(r => r.cells[0].innerText)"
+    assert page.evaluate(names) == [f"n{at}" for at in range(100)]
+    assert page.locator(".pager output").inner_text() == "1 to 100 of 380"
+    for _ in range(3):
+        page.get_by_role("button", name="Next").click()
+    assert page.evaluate(names) == [f"n{at}" for at in range(300, 380)]
+    assert page.get_by_role("button", name="Next").is_disabled()
+    assert page.get_by_role("button", name="Copy a.yaml:1").count() == 80
+    assert "page=4" in page.url
+    page.reload()
+    assert page.evaluate(names)[0] == "n300"
+    page.get_by_role("button", name="Name", exact=True).click()
+    page.get_by_role("button", name="Name", exact=True).click()
+    assert page.evaluate(names)[:2] == ["n379", "n378"]
+    page.get_by_role("searchbox").first.fill("=x")
+    assert page.evaluate(names) == ["n7"]
+    page.evaluate(
+        "navigator.clipboard ? (navigator.clipboard.writeText = words => ((window.copied = words), Promise.resolve())) : 0"
+    )
+    page.get_by_role("button", name="Copy as CSV").click()
+    assert page.evaluate("window.copied") == '"Name","What"\r\n"n7","\'=x"\r\n'
+    page.get_by_role("searchbox").first.fill("n250")
+    page.get_by_role("button", name="Copy as CSV").or_(
+        page.get_by_role("button", name="Copied", exact=True)
+    ).first.click()
+    assert page.evaluate("window.copied").endswith('"n250","a.yaml:1"\r\n')
+    page = visit("index.html#component:n250", root=tmp_path / "site")
+    assert "n250" in page.evaluate(names)
+    quiet = browser.new_context(java_script_enabled=False).new_page()
+    quiet.goto(f"file://{tmp_path}/site/index.html")
+    assert quiet.locator("tbody tr").count() == 380
+
+
+def test_a_cell_of_many_names_shows_the_first_ones(visit: OpenPage, tmp_path: Path) -> None:
+    def write_cell(count: int) -> shapes.Inlines:
+        return tuple(run for at in range(count) for run in (shapes.Text(f"n{at}", ref="page:x"), shapes.Text(", ")))
+
+    rows = (((shapes.Text("few"),), write_cell(60)), ((shapes.Text("many"),), write_cell(500)))
+    table = shapes.Table("t", "Names", (shapes.Column("Step"), shapes.Column("Which")), rows)
+    start = shapes.Page("index.html", "page:index", "R", "overview", shapes.Section("page:index", "R", (table,)))
+    other = shapes.Page("x.html", "page:x", "X", "x", shapes.Section("page:x", "X", ()), (("R", "page:index"),))
+    made = make_site((start, other), {}, title="R", revision="", notices=(), chapter_files=lambda _: None)
+    write_tree(made, tmp_path / "site")
+    page = visit("index.html", root=tmp_path / "site")
+    assert page.locator("td a").count() == 60 + 30
+    page.get_by_role("button", name="470 more").click()
+    assert page.locator("td a").count() == 60 + 500
+    assert page.evaluate("document.activeElement.textContent") == "n30"
+    page = visit("index.html", root=tmp_path / "site")
+    page.emulate_media(media="print")
+    page.wait_for_function("document.querySelectorAll('td a').length == 560")
 
 
 COLUMN = "at => [...document.querySelectorAll('tbody tr')].filter(r => !r.hidden).map(r => r.cells[at].innerText)"
@@ -304,6 +387,20 @@ def test_hostile_titles_run_nothing(visit: OpenPage, tmp_path: Path) -> None:
     assert page.title() == HOSTILE
     assert page.locator("h1").inner_text() == HOSTILE
     assert page.locator("main img").count() == 0
+
+
+@pytest.mark.parametrize("width", [1280, 390])
+def test_long_words_do_not_widen_a_page(visit: OpenPage, tmp_path: Path, width: int) -> None:
+    word = "Donaudampfschiff" * 20
+    table = shapes.Table("t", word, (shapes.Column(word), shapes.Column("x")), (((shapes.Text(word),),) * 2,))
+    parts = (shapes.Section("page:index#a", word), shapes.Section("page:index#b", word))
+    section = shapes.Section("page:index", word, (table, shapes.Figure("f", "f", word, word)), parts)
+    start = shapes.Page("index.html", "page:index", word, "overview", section)
+    pictures = {"f": drawn("f", {"a": word})}
+    made = make_site((start,), pictures, title=word, revision=word, notices=(), chapter_files=lambda _: None)
+    write_tree(made, tmp_path / "site")
+    page = visit("index.html", width, root=tmp_path / "site")
+    assert page.evaluate("document.documentElement.scrollWidth") == width
 
 
 def test_everything_is_there_without_script(browser: Browser, folder: Path) -> None:

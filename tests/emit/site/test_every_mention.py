@@ -120,6 +120,7 @@ def find_unlinked(cell_pieces: CellPieces, pages: Mapping[str, set[str]]) -> Ite
                     yield f"{path}: {piece}"
 
 
+@pytest.mark.slow
 def test_no_element_owner_or_message_is_mentioned_in_a_cell_without_a_link(
     architecture_and_site: tuple[Architecture, FileTree], cell_pieces: CellPieces
 ) -> None:

@@ -4,11 +4,20 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator
+from itertools import combinations, pairwise
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 import pytest
 
+from archgen.emit.graphviz.line_crossings import count_crossings
+from archgen.emit.graphviz.placed_scene import SceneLine
+from archgen.model.architecture import Waypoint
+from archgen.pipeline import check_project
+from archgen.timing.chains.chain_bounds import find_paths_between, list_bounded_paths
+from archgen.timing.chains.cost_network import CostNetwork
+from archgen.views.timing.chain_status import round_duration
+from archgen.views.timing.timing_lookup import analyse_with_chains
 from tests.browser_pages import OpenPage, expect, judge_with_axe, watch_pages
 from tests.browser_polling import wait_until
 from tests.emit.site.conftest import write_bare_site
@@ -90,13 +99,56 @@ def test_the_map_opens_with_all_groups_closed_and_one_arrow_for_all_that_runs_be
     assert page.locator(".map .arrow.many").count() > 5
 
 
+_SAMPLED_WAYS = """() => [...document.querySelectorAll("[data-arrow]")].map((node) => {
+  const way = node.querySelector(".way"), length = way.getTotalLength();
+  const ends = node.dataset.arrow.split(">").sort().join(" ");
+  return [ends, Array.from({ length: 121 }, (_, at) => way.getPointAtLength((length * at) / 120)).map(({ x, y }) => [x, y])];
+})"""
+
+
+def test_closed_groups_stand_as_in_the_overview_and_few_lines_cross(visit: OpenPage) -> None:
+    page = visit()
+    # Both directions between two groups lie on one another: one line for each pair.
+    ways = {ends: [tuple(point) for point in points] for ends, points in page.evaluate(_SAMPLED_WAYS)}
+    assert len(ways) == 30
+    straight_ways = [
+        SceneLine(
+            ends,
+            ends,
+            "",
+            "",
+            {},
+            " ".join(f"{x},{y}" for one, other in pairwise(points) for x, y in (one, one, other)),
+        )
+        for ends, points in ways.items()
+    ]
+    assert sum(count_crossings(pair) > 0 for pair in combinations(straight_ways, 2)) <= 15
+    columns = sorted(
+        {
+            round(float(x))
+            for x in page.evaluate(
+                "() => [...document.querySelectorAll('.box')].map((box) => box.transform.baseVal[0].matrix.e)"
+            )
+        }
+    )
+    assert len(columns) == 5
+
+
+def test_a_pair_of_groups_opens_into_the_flows_of_both_directions(visit: OpenPage) -> None:
+    page = visit()
+    page.locator(".arrow.feedback .hit").first.click(force=True)
+    expect(page.locator(".panel h2")).to_contain_text("↔")
+    heads = page.locator(".panel .flows li div:nth-child(2) .name:last-of-type").all_inner_texts()
+    assert len(set(heads)) > 1
+
+
 def test_a_group_opens_in_place_and_back_closes_it(visit: OpenPage) -> None:
     page = visit()
-    before = box(page, "Robot Task Scheduler").bounding_box()
+    before = box(page, "Environment Model").bounding_box()
     box(page, "Human State").locator(".sign").click(force=True)
     expect(box(page, "Fall Detector")).to_be_visible()
     assert address(page)["open"] == "human_state"
-    assert box(page, "Robot Task Scheduler").bounding_box()["x"] == pytest.approx(before["x"], abs=1)  # type: ignore[index]
+    assert box(page, "Environment Model").bounding_box()["x"] == pytest.approx(before["x"], abs=1)  # type: ignore[index]
     page.go_back()
     expect(box(page, "Fall Detector")).to_have_count(0)
     page.go_forward()
@@ -131,11 +183,6 @@ def test_boxes_do_not_cover_one_another_when_all_is_open(visit: OpenPage) -> Non
 @pytest.mark.parametrize(
     ("hash_", "back", "forth"),
     [
-        (
-            "#level=groups",
-            "Robot Action Planner → Hardware at the Boundary",
-            "Hardware at the Boundary → Robot Action Planner",
-        ),
         (
             "#level=components&open=robot_action_planner",
             "Base Controller → Hardware at the Boundary",
@@ -362,6 +409,48 @@ def test_without_scripts_there_is_a_list_of_what_flows(visit: OpenPage) -> None:
     assert page.get_by_role("link", name="the table of all connections").is_visible()
     assert page.locator("table tbody tr").count() > 40
     assert page.locator("nav#navigation").is_visible()
+    # A script takes the list away, and gives it back on paper.
+    page = visit()
+    expect(page.locator(".explorer")).to_be_visible()
+    expect(page.locator("main table")).to_have_count(0)
+    page.emulate_media(media="print")
+    expect(page.locator("main table").first).to_be_visible()
+    page.emulate_media(media="screen")
+    expect(page.locator("main table")).to_have_count(0)
+
+
+def test_a_way_ends_in_how_long_it_takes(visit: OpenPage) -> None:
+    """The same as `archgen timing` says of the shortest of the 23 ways."""
+    architecture = check_project(RAMCIP).architecture
+    timing = analyse_with_chains(architecture)
+    network = CostNetwork.of_analysis(timing.analysis)
+    ends = (Waypoint("node", "skeleton_tracker"), Waypoint("node", "separation_monitor"))
+    path_set = find_paths_between(network, architecture, *ends)
+    assert path_set
+    shortest = min(list_bounded_paths(network, path_set, 100), key=lambda path: len(path.through))
+    page = visit("#sel=skeleton_tracking..speed_separation_monitor")
+    panel = page.get_by_role("complementary", name="Details")
+    assert shortest.bound.value
+    assert panel.locator(".sum").inner_text() == f"At most {round_duration(shortest.bound.value, '<')}"
+    assert panel.locator(".steps a").all_inner_texts() == list(shortest.through)
+    widths = panel.locator(".steps rect").evaluate_all(
+        "all => all.map((each) => parseFloat(each.getAttribute('width')))"
+    )
+    parts = [each.value or 0 for term in shortest.terms for each in (term.link, term.sampling, term.response)]
+    assert widths == pytest.approx([float(100 * each / shortest.bound.value) for each in parts if each])
+    assert judge_with_axe(page) == []
+    # What nobody knows is said, and has a place.
+    page = visit("#level=nodes&sel=hand_eye_tracker..grasp_generator")
+    panel = page.get_by_role("complementary", name="Details")
+    assert panel.locator(".sum").inner_text().startswith("At least ")
+    assert (
+        panel.locator(".steps").get_by_text("nobody knows how long").count()
+        == panel.locator(".steps .unknown").count()
+        == 1
+    )
+    page.get_by_role("button", name="Close the details").click()
+    expect(panel).to_be_hidden()
+    assert address(page)["sel"] == "hand_eye_tracker..grasp_generator"
 
 
 @pytest.mark.parametrize("form", ["SVG", "PNG"])

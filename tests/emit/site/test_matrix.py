@@ -142,6 +142,31 @@ def test_arrows_go_from_filled_cell_to_filled_cell_and_focus_shows_what_hover_sh
     assert page.evaluate("document.activeElement.ariaLabel") == "A 1 to B 0: 1 flow"
 
 
+def test_a_hundred_groups_are_few_elements_with_all_their_cells(browser: Browser, tmp_path: Path) -> None:
+    rows = tuple(MatrixEntry(f"r{at}", f"component:r{at}", "", at // 2) for at in range(200))
+    groups = tuple(MatrixEntry(f"G{at}", f"group:{at}") for at in range(100))
+    flows = [MatrixFlow(2 * at, 2 * ((at + step) % 100), "x", "") for at in range(100) for step in (1, 3, 10)]
+    write_tree(build(Matrix("components", "Components", rows, tuple(flows), groups=groups)), tmp_path / "site")
+    with watch_pages(("file://",)) as watch:
+        page = watch(browser.new_context(viewport={"width": 1280, "height": 800}).new_page())
+        page.goto(f"file://{tmp_path}/site/index.html")
+        assert page.locator("tbody tr").count() == 100
+        assert page.evaluate("document.querySelectorAll('*').length") < 3000
+        # Each filled cell stands below the head of its column, and the cross of what is looked at goes through gaps.
+        places = """() => [...document.querySelectorAll("td > a")].every((link) => {
+          const head = document.querySelectorAll("thead th")[link.dataset.column].getBoundingClientRect();
+          const cell = link.parentElement.getBoundingClientRect();
+          return Math.abs(head.left - cell.left) < 1 && Math.abs(head.width - cell.width) < 1; })"""
+        assert page.evaluate(places)
+        page.locator('a[data-row="2"][data-column="3"]').focus()
+        assert page.locator("td.crossed").count() > 80
+        assert page.evaluate(
+            "[...document.querySelectorAll('.crossed')].every((gap) => gap.colSpan > gap.style.getPropertyValue('--from'))"
+        )
+        page.keyboard.press("ArrowRight")
+        assert page.evaluate("document.activeElement.dataset.column") == "5"
+
+
 def test_hover_shows_both_partners_and_what_flows_as_text(page: BrowserPage) -> None:
     page.locator("td > a").first.hover()
     card = page.locator(".matrix-card")

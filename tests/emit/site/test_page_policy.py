@@ -6,6 +6,8 @@ import re
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+import pytest
+
 from archgen.emit.file_tree import FileTree
 from archgen.emit.picture import Picture
 from archgen.emit.site.page_frame import PAGE_POLICY
@@ -37,6 +39,7 @@ def test_each_page_has_the_policy_and_nothing_that_it_refuses(site: FileTree) ->
             assert _INLINE.findall(text) == [], path
 
 
+@pytest.mark.slow
 def test_the_case_study_has_nothing_in_its_pages_that_the_policy_refuses(example: Path) -> None:
     for path in example.rglob("*.html"):
         assert _INLINE.findall(path.read_text(encoding="utf-8")) == [], path.name

@@ -100,6 +100,7 @@ def test_nothing_of_the_index_is_loaded_before_the_first_key(visit: OpenPage) ->
 @pytest.mark.parametrize(
     ("words", "first"),
     [
+        ("who reads the skeletons", "Skeletons"),
         ("navigator", "Navigator"),
         ("NAVIGATOR", "Navigator"),
         ("navig", "Navigator"),

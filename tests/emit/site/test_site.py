@@ -413,7 +413,12 @@ def test_a_waterfall_is_written_with_positions_in_percent_and_all_text_escaped()
         (1.0, 0.25),
         "deadline <10 s>",
         ((0.0, "0"), (0.5, "5 s")),
-        (step,),
+        (
+            step,
+            WaterfallStep(Text("early"), (), (WaterfallPiece("response", 0.1, 0.3),), "<= 4.2 %"),
+            WaterfallStep(Text("late"), (), (WaterfallPiece("response", 0.9, 1.0),), "1 <b>"),
+            WaterfallStep(Text("all"), (), (WaterfallPiece("response", 0.1, 1.0),), "9 %"),
+        ),
         "short",
         (KeyFigure("At <b>", "5 s", "", (), ""),),
         (card,),
@@ -425,6 +430,10 @@ def test_a_waterfall_is_written_with_positions_in_percent_and_all_text_escaped()
     for text in ("&lt;lead&gt;", "deadline &lt;10 s&gt;", "At &lt;b&gt;", "&lt;s&gt;", "P &amp; Q", "waits &lt;i&gt;"):
         assert text in html
     assert '<rect class="sampling" x="0%" width="50%" y="4" height="16"><title>waits &lt;b&gt;</title></rect>' in html
+    # Short words stand at their bar; where that leaves no room, and longer ones, below it.
+    assert '<text x="30%" dx="6" y="16">≤ 4.2 %</text></svg><p class=spoken>' in html
+    assert '<text x="90%" dx="-6" y="16" text-anchor="end">1 &lt;b&gt;</text></svg><p class=spoken>' in html
+    assert "</svg><p>9 %</p>" in html
     assert html.count('class="cut"') == 4
     assert html.count('id="waterfall-hatch"') == 1
     assert 'class="limit" x="25%"' in html

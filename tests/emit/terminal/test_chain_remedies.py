@@ -87,8 +87,8 @@ def test_all_that_was_tried_is_a_table_and_the_best_is_marked() -> None:
         "Proposed: way 1.",
         "Not proven then: a 120 ms, 20 ms above its deadline.",
         (
-            "Priorities are those of processes under SCHED_FIFO: what starts each has to set its own (in a launch file "
-            '`prefix="chrt -f 20"`), and may do so with CAP_SYS_NICE, or with `rtprio 99` in /etc/security/limits.d.'
+            "Priorities are those of processes under SCHED_FIFO: launch files, scripts, units and compose files of "
+            "`archgen generate` start each with its own, which needs CAP_SYS_NICE, or `rtprio 99` in /etc/security/limits.d."
         ),
     ]
     worse = list(chain_remedies.format_proposal(_propose([{"a": 120, "b": 90}, {"a": 110, "b": 101}])))

@@ -48,22 +48,22 @@ def test_the_manual_names_every_kind_of_graph() -> None:
 
 
 def test_the_manual_names_every_filter() -> None:
-    names = [*_first_column("filter"), *_names_in_generation_page("filter")]
+    names = [*_first_column("filter"), *_names_in_generator_page("filter")]
     assert sorted(names) == sorted(TEMPLATE_FILTERS)
 
 
 def test_the_manual_names_every_view() -> None:
     views = json.loads((ROOT / "schemas" / "backend.schema.json").read_text())["$defs"]["view"]["enum"]
     assert sorted(views) == sorted(list_view_names(views))
-    generated_views = _names_in_generation_page("view")
+    generated_views = _names_in_generator_page("view")
     assert generated_views == [name for name in views if name not in DOCUMENT_VIEWS]
     shown_views = [name for name in _first_column("variable") if name in views]
     assert sorted(shown_views[:-1]) == sorted(DOCUMENT_VIEWS)
     assert shown_views[-1] == generated_views[0], "one of those of the other page stands for all"
 
 
-def _names_in_generation_page(heading: str) -> list[str]:
-    """Return the names in the first column of a table of docs/generation.md; a row may name several."""
-    table = (ROOT / "docs" / "generation.md").read_text().partition(f"\n| {heading} |")[2].partition("\n\n")[0]
+def _names_in_generator_page(heading: str) -> list[str]:
+    """Return the names in the first column of a table of docs/own_generators.md; a row may name several."""
+    table = (ROOT / "docs" / "own_generators.md").read_text().partition(f"\n| {heading} |")[2].partition("\n\n")[0]
     cells = re.findall(r"^\| (`[^|]*`) \|", table, re.MULTILINE)
     return [name for cell in cells for name in re.findall(r"`(\w+)`", cell)]

@@ -4,7 +4,9 @@ from __future__ import annotations
 
 import os
 import shutil
+import subprocess
 from collections.abc import Callable, Iterable, Iterator
+from functools import partial
 from pathlib import Path
 
 import pytest
@@ -117,15 +119,28 @@ def test_a_file_made_once_is_the_users(tmp_path: Path) -> None:
     def once(text: str, *words: str) -> list[GeneratedFile]:
         return [GeneratedFile("own.py", text.encode(), once=True, expected_words=words)]
 
-    assert verbs(generate(tmp_path, once("def on_scan(): ..."))) == {"own.py": "new"}
+    assert verbs(generate(tmp_path, once("empty"))) == {"own.py": "new"}
+    (tmp_path / "own.py").write_text("def on_scan(): ...")
     plan = generate(tmp_path, once("another", "on_scan", "on_image", "scan"))
-    assert [(step.verb, step.note) for step in plan.steps] == [("yours", "it lacks on_image, scan")]
+    assert [step.verb for step in plan.steps] == ["yours"]
+    assert [each.message for step in plan.steps for each in step.findings] == ["it lacks `on_image`", "it lacks `scan`"]
+    assert plan.has_unfit_code
     assert texts(tmp_path) == {"own.py": "def on_scan(): ..."}
     assert verbs(generate(tmp_path, [])) == {"own.py": "yours"}
     assert verbs(generate(tmp_path, [])) == {}
     assert texts(tmp_path) == {"own.py": "def on_scan(): ..."}
     (tmp_path / "own.py").unlink()
     assert verbs(generate(tmp_path, once("another"))) == {"own.py": "new"}
+
+
+def test_what_nobody_wrote_into_goes_with_its_element(tmp_path: Path) -> None:
+    generate(tmp_path, [GeneratedFile("own.py", b"def on_scan(): ...", once=True, expected_words=("on_scan",))])
+    other = GeneratedFile("own.py", b"def on_image(): ...", once=True, expected_words=("on_image",))
+    (step,) = generate(tmp_path, [other]).steps
+    assert [each.message for each in step.findings] == [
+        "is of an older model, and nobody wrote into it: take it away for a new one (it lacks `on_image`)"
+    ]
+    assert verbs(generate(tmp_path, [])) == {"own.py": "removed"}
 
 
 def test_programs_may_be_run(tmp_path: Path) -> None:
@@ -440,3 +455,65 @@ def test_a_file_that_nobody_edited_is_taken_over_and_given_back(tmp_path: Path) 
     }
     assert verbs(generate(tmp_path, files(a="4"))) == {"a": "changed"}
     assert (tmp_path / "c").read_text() == "1"
+
+
+def merge_by_git(folder: Path, base: str, ours: str, theirs: str, marks: str = "") -> None:
+    """Merge what two branches made of a file `a` and of the record, with git's marks where it is not told how."""
+    git = partial(run_git, folder)
+    git("init", "-q", "-b", "main")
+    for branch, text in (("main", base), ("ours", ours), ("theirs", theirs)):
+        git("checkout", "-q", *(("-b", branch, "main") if branch != "main" else ("--orphan", "main")))
+        generate(folder, files(a=text))
+        git("add", "-A")
+        git("commit", "-qm", branch)
+    if marks:
+        (folder / ".gitattributes").unlink()
+        (folder / ".archgen" / ".gitattributes").unlink()
+        git("commit", "-qam", "no attributes")
+    merged = git("merge", "-q", "ours", check=False)
+    assert (merged.returncode == 0) == (not marks), merged.stdout
+
+
+def run_git(folder: Path, *words: str, check: bool = True) -> subprocess.CompletedProcess[str]:
+    command = ("git", "-c", "user.name=a", "-c", "user.email=a@b", "-c", "commit.gpgsign=false", *words)
+    return subprocess.run(command, cwd=folder, capture_output=True, text=True, check=check)  # noqa: S603
+
+
+@pytest.mark.parametrize("marks", ["", "marks"])
+def test_what_git_made_of_two_branches_is_made_anew(tmp_path: Path, marks: str) -> None:
+    merge_by_git(tmp_path, "1\n2\n3\n", "1\nx\n3\n", "1\ny\n3\n", marks)
+    assert ("<<<<<<<" in (tmp_path / "a").read_text()) == bool(marks)
+    assert verbs(generate(tmp_path, files(a="1\nx y\n3\n"))) == {"a": "merged"}
+    assert (tmp_path / "a").read_text() == "1\nx y\n3\n"
+    assert verbs(generate(tmp_path, files(a="1\nx y\n3\n"))) == {"a": "same"}
+
+
+@pytest.mark.parametrize("written", ["1\nx\ny\nmine\n3\n", "<<<<<<< a\nmine\n=======\ny\n>>>>>>> b\n"])
+def test_what_somebody_wrote_into_a_merge_stays(tmp_path: Path, written: str) -> None:
+    merge_by_git(tmp_path, "1\n2\n3\n", "1\nx\n3\n", "1\ny\n3\n")
+    (tmp_path / "a").write_text(written)
+    assert verbs(generate(tmp_path, files(a="1\nx y\n3\n"))) == {"a": "edited"}
+    assert (tmp_path / "a").read_text() == written
+
+
+def test_lines_that_somebody_took_away_are_no_merge(tmp_path: Path) -> None:
+    generate(tmp_path, files(a="1\n2\n3\n"))
+    (tmp_path / "a").write_text("1\n3\n")
+    assert verbs(generate(tmp_path, files(a="1\n2\n3\n4\n"))) == {"a": "edited"}
+
+
+def test_attributes_of_the_user_stay(tmp_path: Path) -> None:
+    run_git(tmp_path, "init", "-q")
+    (tmp_path / ".gitattributes").write_text("*.png binary\n")
+    generate(tmp_path, files(a="1"))
+    text = (tmp_path / ".gitattributes").read_text()
+    assert text.startswith("*.png binary\n# archgen: ")
+    assert "\n/a merge=union linguist-generated\n" in text
+    assert (tmp_path / ".archgen" / ".gitattributes").exists()
+    (tmp_path / ".gitattributes").write_text(f"{text}*.jpg binary")
+    generate(tmp_path, files(b="1"))
+    assert (tmp_path / ".gitattributes").read_text() == f"{text.replace('/a ', '/b ')}*.jpg binary"
+    (tmp_path / ".gitattributes").write_text(text)
+    generate(tmp_path, [])
+    assert not (tmp_path / ".archgen").exists()
+    assert (tmp_path / ".gitattributes").read_text() == "*.png binary\n"

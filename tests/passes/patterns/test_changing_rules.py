@@ -30,7 +30,13 @@ def _write(text: str, folder: Path) -> CheckedProject:
     return check_project(folder)
 
 
-@pytest.fixture(params=[*(f"robot {seed}" for seed in range(8)), *(f"project {seed}" for seed in range(8))])
+@pytest.fixture(
+    params=[
+        pytest.param(f"{maker} {seed}", marks=pytest.mark.slow if seed > 2 else ())
+        for maker in ("robot", "project")
+        for seed in range(8)
+    ]
+)
 def drawn(request: pytest.FixtureRequest, tmp_path: Path) -> CheckedProject:
     """Return a project that is drawn by either of the makers."""
     maker, _, seed = request.param.partition(" ")

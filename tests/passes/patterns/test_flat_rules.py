@@ -23,7 +23,7 @@ from archgen.syntax.yaml_writer import write_yaml
 from tests.judged_projects import judge_shipped
 from tests.passes.patterns.random_robots import make_robot
 from tests.passes.random_projects import RandomProject
-from tests.property_sizes import list_seeds
+from tests.property_sizes import list_seeds, mark_further_samples
 from tests.running import ROOT
 
 CONNECTIONS = ("connect_components", "connect_ports", "connect_types", "resolve_instances")
@@ -107,6 +107,7 @@ def _compare(checked: CheckedProject) -> int:
     return str(_pack(checked)).count("'components'") - str(packed).count("'components'")
 
 
+@pytest.mark.slow
 def test_rules_leave_the_leaves_and_connections_of_the_pass(tmp_path: Path) -> None:
     gone = [
         _compare(_write_out(check_project(make_robot(seed, tmp_path / f"{seed}")), tmp_path / f"w{seed}"))
@@ -121,7 +122,7 @@ def test_rules_and_pass_agree_on_drawn_projects(seed: int, tmp_path: Path) -> No
     _compare(_write_out(check_project(tmp_path), tmp_path / "written", "node"))
 
 
-@pytest.mark.parametrize("example", ["drone", "first_robot", "bringup"])
+@pytest.mark.parametrize("example", mark_further_samples(["first_robot", "drone", "bringup"]))
 def test_rules_and_pass_agree_on_examples(example: str, tmp_path: Path) -> None:
     keys = ("node", "nodes", "parameters", "frames", "chains", "use_cases", "views", "policies", "scenarios")
     _compare(_write_out(judge_shipped(ROOT / "examples" / example), tmp_path / "written", *keys))

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from archgen.passes.pass_shape import STATES
+from archgen.passes.pass_shape import STATES, PassWork
 from archgen.passes.patterns.architecture_view import ArchitectureView
 from archgen.passes.patterns.pattern_registry import list_shipped_passes
 from archgen.passes.patterns.rule_running import run_rules
@@ -15,7 +15,7 @@ from archgen.passes.project_tree import ProjectTree
 from archgen.pipeline import check_project
 from archgen.syntax.yaml_tree import MappingNode, ScalarNode
 from tests.passes.patterns.random_robots import make_robot
-from tests.passes.patterns.transforming import pass_of, read, tree_of
+from tests.passes.patterns.transforming import pass_of, read, work_of
 
 FIGURE_4 = """
 - find: {components: {$whole: {autoconnect: ports}, $s: {in: $whole, outputs: {$port: {type: $type}}}, $t: {in: $whole, inputs: {$port: {type: $type}}}}}
@@ -39,19 +39,20 @@ def _make_chain(count: int, *, same_names: bool) -> str:
 
 
 def test_a_thousand_components_take_few_steps(tmp_path: Path) -> None:
-    tree = tree_of(_make_chain(1000, same_names=False), tmp_path)
+    work = work_of(_make_chain(1000, same_names=False), tmp_path)
     # With every pair tried it would be millions.
-    assert run_rules(pass_of(FIGURE_4), tree, match_steps=150_000) == ()
-    components = tree.get_mapping(("groups", "g", "components"))
+    assert run_rules(pass_of(FIGURE_4), work, match_steps=150_000) == ()
+    components = work.tree.get_mapping(("groups", "g", "components"))
     assert len(components) == 1000
-    last = tree.get(("groups", "g", "components", "c999", "inputs", "p999", "from", 0))
+    last = work.tree.get(("groups", "g", "components", "c999", "inputs", "p999", "from", 0))
     assert isinstance(last, ScalarNode)
     assert last.text == "c998.p999"
 
 
+@pytest.mark.slow
 def test_a_million_pairs_end_in_a_finding(tmp_path: Path) -> None:
-    tree = tree_of(_make_chain(1000, same_names=True), tmp_path)
-    (finding,) = run_rules(pass_of(FIGURE_4), tree, match_steps=100_000)
+    work = work_of(_make_chain(1000, same_names=True), tmp_path)
+    (finding,) = run_rules(pass_of(FIGURE_4), work, match_steps=100_000)
     assert finding.message == "the pass `tried` takes more than 100,000 steps to find what it looks for"
     assert finding.span.line == 3
 
@@ -101,9 +102,10 @@ def test_damaged_rules_end_in_findings(seed: int, tmp_path: Path) -> None:
         assert damaged.read_pass is not None or damaged.diagnostics
         if damaged.read_pass is not None:
             tree = ProjectTree(checked.merged_table)
-            findings = run_rules(damaged.read_pass, tree, max_applications=200, match_steps=20_000)
+            work = PassWork(checked.loaded_project, tree, checked.architecture.interfaces)
+            findings = run_rules(damaged.read_pass, work, max_applications=200, match_steps=20_000)
             assert all(each.rule == "wrong-pass" and each.message for each in findings)
             # What it made can be looked at again.
             assert isinstance(tree.root, MappingNode)
             view = ArchitectureView(tree)
-            assert all(view.get_component(path) is not None for path in view.list_components())
+            assert all(view.get_component(path) is not None for path in view.list_elements("components"))

@@ -25,31 +25,27 @@ class PlainView:
 
     def __init__(self, components: dict[str, dict[str, ViewValue]], types: dict[str, dict[str, ViewValue]]) -> None:
         """Take what there is."""
-        self._components, self._types = components, types
+        self._sections = {"components": components, "types": types}
 
-    def list_components(self) -> Sequence[str]:
-        """Return all paths."""
-        return tuple(self._components)
+    def list_elements(self, section: str) -> Sequence[str]:
+        """Return all paths or names."""
+        return tuple(self._sections[section])
 
-    def get_component(self, path: str) -> dict[str, ViewValue] | None:
-        """Return a component."""
-        return self._components.get(path)
+    def get_element(self, section: str, name: str) -> dict[str, ViewValue] | None:
+        """Return a component or type."""
+        return self._sections[section].get(name)
 
     def find_having(self, token: IndexToken) -> Sequence[str]:
         """Return those that a token finds."""
-        return [path for path, body in self._components.items() if token in set(list_tokens(body))]
+        return [path for path, body in self._sections["components"].items() if token in set(list_tokens(body))]
 
     def count_having(self, token: IndexToken) -> int:
         """Return how many a token finds."""
         return len(self.find_having(token))
 
-    def list_types(self) -> Sequence[str]:
-        """Return all types."""
-        return tuple(self._types)
-
-    def get_type(self, name: str) -> dict[str, ViewValue] | None:
-        """Return a type."""
-        return self._types.get(name)
+    def is_a(self, name: str, type_name: str) -> bool:
+        """Plain data are made from nothing."""
+        return name == type_name
 
 
 ROBOT = PlainView(

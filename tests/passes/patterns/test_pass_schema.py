@@ -12,6 +12,7 @@ from archgen.passes.pass_shape import STATES
 from archgen.passes.patterns.expressions import VALUE_FUNCTIONS
 from archgen.passes.patterns.pattern_registry import FILE_KEYS, MAX_RULES, list_shipped_passes
 from archgen.passes.patterns.rule_reading import RULE_KEYS
+from archgen.passes.patterns.view_values import VIEW_KEYS
 from tests.passes.patterns.transforming import read
 from tests.running import ROOT
 
@@ -28,6 +29,8 @@ def test_the_schema_knows_what_is_read() -> None:
     rule = SCHEMA["$defs"]["rule"]["properties"]
     assert set(SCHEMA["properties"]) == set(FILE_KEYS)
     assert set(rule) == set(RULE_KEYS)
+    assert set(SCHEMA["$defs"]["view"]["properties"]) == set(VIEW_KEYS)
+    assert set(SCHEMA["$defs"]["negative"]["properties"]) == {*VIEW_KEYS, "where"}
     assert {each["const"] for each in SCHEMA["$defs"]["state"]["oneOf"]} == set(STATES), (
         "write the new states into schemas/pass.schema.json"
     )

@@ -8,7 +8,7 @@ from typing import Any
 import pytest
 
 from archgen.passes.patterns.rule_running import run_rules
-from tests.passes.patterns.transforming import data_of, pass_of, said, transform, tree_of
+from tests.passes.patterns.transforming import data_of, pass_of, said, transform, tree_of, work_of
 
 ROBOT = """
 archgen: 1
@@ -54,7 +54,7 @@ def test_components_of_every_depth_are_seen_with_what_they_have_from_their_types
     from archgen.passes.patterns.architecture_view import ArchitectureView
 
     view = ArchitectureView(tree_of(ROBOT, tmp_path))
-    assert list(view.list_components()) == [
+    assert list(view.list_elements("components")) == [
         *("camera", "filter", "station", "station.eye", "station.desk", "robot"),
         *(f"robot.{name}" for name in ("left", "right", "sharpen", "head", "brain", "shell", "shell.inner")),
     ]
@@ -280,8 +280,8 @@ def test_what_cannot_be_written_ends_the_pass_with_a_finding(rules: str, wanted:
 
 def test_a_rule_that_goes_on_for_ever_is_stopped(tmp_path: Path) -> None:
     rules = "- {find: {components: {robot: }}, let: {$n: unique(robot.new)}, add: {components: {$n: {title: x}}}}"
-    tree = tree_of(ROBOT, tmp_path)
-    (finding,) = run_rules(pass_of(rules), tree, max_applications=50)
+    work = work_of(ROBOT, tmp_path)
+    (finding,) = run_rules(pass_of(rules), work, max_applications=50)
     assert finding.message == "the pass `tried` has changed something 50 times, and still finds more"
     assert finding.help == "say in `unless` when the work of a rule is done"
     assert finding.labels[0].span.file == "archgen.yaml"
@@ -293,7 +293,7 @@ def test_two_rules_that_undo_one_another_are_stopped(tmp_path: Path) -> None:
     - {find: {components: {robot.brain: {title: B}}}, set: {components: {robot.brain: {title: A}}}}
     - {find: {components: {robot.brain: }}, unless: {components: {robot.brain: {title: }}}, add: {components: {robot.brain: {title: A}}}}
     """
-    (finding,) = run_rules(pass_of(rules), tree_of(ROBOT, tmp_path), max_applications=100)
+    (finding,) = run_rules(pass_of(rules), work_of(ROBOT, tmp_path), max_applications=100)
     assert "100 times" in finding.message
 
 
@@ -308,9 +308,9 @@ def test_rules_run_in_order_until_none_finds_anything(tmp_path: Path) -> None:
 
 def test_what_is_made_knows_where_it_comes_from(tmp_path: Path) -> None:
     rules = "- {find: {components: {robot.brain: }}, unless: {components: {robot.brain: {title: }}}, add: {components: {robot.brain: {title: Brain}}}}"
-    tree = tree_of(ROBOT, tmp_path)
-    assert run_rules(pass_of(rules), tree) == ()
-    origin = tree.trace(("groups", "robot", "components", "brain", "title"))
+    work = work_of(ROBOT, tmp_path)
+    assert run_rules(pass_of(rules), work) == ()
+    origin = work.tree.trace(("groups", "robot", "components", "brain", "title"))
     assert origin.passes == ("tried",)
     assert (origin.at.file, origin.at.line) == ("archgen.yaml", 19)
 

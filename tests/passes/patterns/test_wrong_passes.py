@@ -128,7 +128,7 @@ def _said(text: str) -> list[str]:
         ),
         (
             "title: x\nrules: [{find: {components: {$c: }, types: {$c: }}, drop: {components: {$c: }}}]",
-            "2:45 `$c` is a component and a conceptual type: nothing is both | use two variables",
+            "2:45 `$c` is a component and a type: nothing is both | use two variables",
         ),
         (
             "title: x\n" + FIND + "set: {components: {$c: {title: a}}}, add: {components: {$c: {title: b}}}}]",
@@ -141,6 +141,31 @@ def _said(text: str) -> list[str]:
         (
             "title: x\nneeds: [flatt]\n" + FIND + "drop: {components: {$c: }}}]",
             "2:9 `flatt` is nothing that passes leave true | did you mean `flat`?",
+        ),
+        (
+            "title: x\nrules: [{find: {components: {$c: {node: {host: pc}}}}, drop: {components: {$c: }}}]",
+            (
+                "2:42 `host` below `node` is only what stands at the component itself, and not where it runs"
+                " | `host` of the component holds wherever it is written"
+            ),
+        ),
+        (
+            "title: x\nrules: [{find: {chains: {$c: }}, drop: {components: {$c: }}}]",
+            (
+                "2:17 `chains` is no key of `find` | `find` has `components`, `types`, `nodes`, `hosts`, `containers`,"
+                " `links`, `topics`, `connections`"
+            ),
+        ),
+        (
+            "title: x\nrules: [{find: {connections: {$c: {crosses: hosts}}}, drop: {nodes: {n: }}}]",
+            "2:45 `hosts` is nothing that a connection crosses | did you mean `host`?",
+        ),
+        (
+            "title: x\n" + FIND + "set: {topics: {/x: {flow: topic}}}}]",
+            (
+                "2:64 a topic follows from what is connected, and is not written"
+                " | a topic is named at a node: `publishes: {$port: {topic: ...}}`"
+            ),
         ),
         ("a: [\n", ""),
     ],

@@ -8,7 +8,7 @@ from pathlib import Path
 import yaml
 
 from archgen.diagnostics.diagnostic import Diagnostic
-from archgen.passes.pass_shape import STATES
+from archgen.passes.pass_shape import STATES, PassWork
 from archgen.passes.patterns.pass_shapes import PatternPass
 from archgen.passes.patterns.pattern_registry import ReadPass, read_pass
 from archgen.passes.patterns.rule_running import run_rules
@@ -29,20 +29,26 @@ def read(text: str) -> ReadPass:
     return read_pass("tried", "passes/tried.yaml", text, tuple(STATES))
 
 
-def tree_of(project: str, folder: Path) -> ProjectTree:
-    """Give the tree of a project of one file."""
+def work_of(project: str, folder: Path) -> PassWork:
+    """Give what a pass works with in a project of one file."""
     folder.mkdir(parents=True, exist_ok=True)
     (folder / "archgen.yaml").write_text(textwrap.dedent(project), encoding="utf-8")
-    tree = ProjectTree(check_project(folder).merged_table)
+    checked = check_project(folder)
+    tree = ProjectTree(checked.merged_table)
     tree.maker = "tried"
-    return tree
+    return PassWork(checked.loaded_project, tree, checked.architecture.interfaces)
+
+
+def tree_of(project: str, folder: Path) -> ProjectTree:
+    """Give the tree of a project of one file."""
+    return work_of(project, folder).tree
 
 
 def transform(project: str, rules: str, folder: Path) -> tuple[dict[str, object], tuple[Diagnostic, ...]]:
     """Run rules upon a project of one file; give it as plain data, with what was found."""
-    tree = tree_of(project, folder)
-    findings = run_rules(pass_of(rules), tree)
-    data = node_to_data(tree.root)
+    work = work_of(project, folder)
+    findings = run_rules(pass_of(rules), work)
+    data = node_to_data(work.tree.root)
     assert isinstance(data, dict)
     return data, findings
 

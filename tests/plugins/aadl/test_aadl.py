@@ -23,7 +23,7 @@ from tests.plugins.aadl.aadl_judge import Classifier, find_member, judge_package
 from tests.running import ROOT, contents
 
 EXAMPLES = [
-    "example_ramcip",
+    pytest.param("example_ramcip", marks=pytest.mark.slow),
     *(f"examples/{name}" for name in ("arm", "bringup", "cleaning_robot", "drone", "first_robot", "reference_system")),
     "examples/vehicle/scenario",
     "examples/vehicle/two_lasers",

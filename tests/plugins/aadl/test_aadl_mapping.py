@@ -8,6 +8,7 @@ from typing import Any
 import pytest
 
 from archgen.diagnostics.diagnostic import Severity
+from archgen.importers.foreign_import import ForeignFileError
 from archgen.pipeline import check_text
 from archgen.plugins.aadl.aadl_import import read_aadl
 from archgen.syntax.yaml_writer import write_yaml
@@ -449,3 +450,18 @@ def test_files_of_a_model_are_looked_up_in_one_another(tmp_path: Path) -> None:
     )
     sections = merge_slices(read_aadl([tmp_path / "b.aadl", tmp_path / "a.aadl"]))
     assert drop_hints(sections["component_types"]["p"]["outputs"]) == {"x": {"type": "T"}, "y": {"type": "T"}}
+
+
+def test_a_folder_is_the_files_in_it_and_one_without_aadl_stops_no_other(tmp_path: Path) -> None:
+    """R16: as the other imports take folders; links are left out, and an empty folder is told."""
+    (tmp_path / "model/parts").mkdir(parents=True)
+    (tmp_path / "model/empty.aadl").write_text("")
+    (tmp_path / "model/notes.txt").write_text("no model")
+    (tmp_path / "model/parts/a.aadl").write_text("package P\npublic\n  process lamp\n  end lamp;\nend P;\n")
+    (tmp_path / "model/link.aadl").symlink_to(tmp_path / "model/parts/a.aadl")
+    imported = read_aadl([tmp_path / "model"])
+    assert [(note.kind, Path(note.span.file).name) for note in imported.notes] == [("file", "empty.aadl")]
+    assert imported.taken == read_aadl([tmp_path / "model/parts/a.aadl"]).taken
+    (tmp_path / "none").mkdir()
+    with pytest.raises(ForeignFileError, match=r"no file in it is called `\.aadl`"):
+        read_aadl([tmp_path / "none"])

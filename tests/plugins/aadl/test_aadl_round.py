@@ -12,6 +12,7 @@ from archgen.pipeline import check_project
 from archgen.products.output_options import OutputOptions
 from archgen.products.workspace_product import write_workspace
 from tests.judged_projects import judge_shipped
+from tests.property_sizes import mark_further_samples
 from tests.running import ROOT, archgen_here
 
 PROJECT = """\
@@ -224,7 +225,9 @@ def test_nothing_comes_back_as_something_else(differences: list[tuple[str, str]]
     assert [path for fate, path in differences if fate == "differs"] == []
 
 
-@pytest.mark.parametrize("example", ["example_ramcip", "examples/arm", "examples/drone", "examples/first_robot"])
+@pytest.mark.parametrize(
+    "example", mark_further_samples(["examples/arm", "examples/drone", "examples/first_robot", "example_ramcip"])
+)
 def test_examples_are_read_back(example: str, tmp_path: Path) -> None:
     project = judge_shipped(ROOT / example)
     write_workspace(project, OutputOptions(), "aadl", tmp_path / "ws")

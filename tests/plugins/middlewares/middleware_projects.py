@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
+from archgen.diagnostics.diagnostic import Severity
 from archgen.pipeline import CheckedProject, check_project
 from archgen.products.output_options import OutputOptions
 from archgen.products.workspace_product import WorkspaceRequest, write_workspace
@@ -108,7 +109,7 @@ def generate(
 ) -> list[str]:
     """Generate into a workspace, and return what was left out."""
     result = write_workspace(project, OutputOptions(), backend, workspace, request or WorkspaceRequest())
-    return [each.message for each in result.findings]
+    return [each.message for each in result.findings if each.severity is not Severity.NOTE]
 
 
 def compile_cpp(files: list[Path], folders: list[Path], stand_ins: list[Path], unit: Path) -> str:

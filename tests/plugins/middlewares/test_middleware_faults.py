@@ -7,7 +7,9 @@ from pathlib import Path
 
 import pytest
 
-from archgen.products.workspace_product import WorkspaceRequest
+from archgen.diagnostics.diagnostic import Severity
+from archgen.products.output_options import OutputOptions
+from archgen.products.workspace_product import WorkspaceRequest, write_workspace
 from tests.outside_tools import find_tool, run_judge
 from tests.plugins.middlewares.middleware_projects import STAND_INS, generate, write_project
 from tests.plugins.middlewares.test_middlewares import MIDDLEWARES, compile_middleware
@@ -115,6 +117,31 @@ groups:
     assert "KDL" not in files["include/p/types.hpp"]
     for name in ("cpf", "lua"):
         assert "kdl_typekit" in files[f"deployment/no_host.{name}"]
+
+
+def test_types_of_which_nobody_says_the_fields_are_told_once_where_they_are_written(tmp_path: Path) -> None:
+    text = """\
+archgen: 1
+types:
+  PubData: {}
+  Own: {message: p_msgs/msg/Own, fields: {held: {type: elsewhere_msgs/msg/Held}}}
+  Of others: {hints: {orocos: {type: 'KDL::Frame'}}}
+  Answer: {}
+groups:
+  g:
+    components:
+      a: {outputs: {data: PubData, list: "PubData[]", own: Own, of_others: Of others, text: string}, operations: {get: Answer}}
+      b: {inputs: {data: a.data}, outputs: {}}
+"""
+    result = write_workspace(
+        write_project(tmp_path / "p", text), OutputOptions(), "orocos", tmp_path / "w", WorkspaceRequest()
+    )
+    told = [(each.severity, each.span.line, each.message.partition(":")[0]) for each in result.findings]
+    assert sorted(told, key=lambda each: each[1]) == [
+        (Severity.NOTE, 3, "nobody says the fields of `PubData`"),
+        (Severity.NOTE, 4, "nobody says the fields of `elsewhere_msgs/msg/Held`"),
+        (Severity.NOTE, 6, "nobody says the fields of `Answer`"),
+    ]
 
 
 def test_messages_that_hold_one_another_deeply_are_records(tmp_path: Path) -> None:

@@ -6,6 +6,8 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
+import pytest
+
 from archgen.pipeline import check_project
 from archgen.plugins.middlewares.java_names import choose_java_spellings
 from archgen.plugins.middlewares.simulation_view import make_view
@@ -152,4 +154,21 @@ def test_classes_of_one_name_are_written_in_full() -> None:
         "own": "Point",
         "text": "a.e.List",
         "plain": "Twist",
+    }
+
+
+@pytest.mark.parametrize(("distro", "default"), [("jazzy", 1.0), ("noetic", None)])
+def test_a_rotation_of_ros_2_begins_as_none(tmp_path: Path, distro: str, default: float | None) -> None:
+    text = f"""
+archgen: 1
+ros: {{distro: {distro}}}
+groups: {{g: {{components: {{a: {{outputs: {{turn: geometry_msgs/msg/Quaternion}}}}, b: {{inputs: {{turn: a.turn}}}}}}}}}}
+"""
+    data, _ = view(tmp_path, text)
+    (record,) = [each for each in data["data"] if each["message"] == "geometry_msgs/msg/Quaternion"]
+    assert {each["name"]: each["default"] for each in record["fields"]} == {
+        "x": None,
+        "y": None,
+        "z": None,
+        "w": default,
     }

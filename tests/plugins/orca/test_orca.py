@@ -84,7 +84,7 @@ def test_the_scenario_of_the_paper(run: Run, tmp_path: Path) -> None:
     assert set(files) == SCENARIO
     lines = sum(len(text.splitlines()) for text in files.values())
     properties = sum(len(read_properties(text)) for text in files.values())
-    page = (ROOT / "docs" / "generation.md").read_text("utf-8")
+    page = " ".join((ROOT / "docs" / "middlewares.md").read_text("utf-8").split())
     assert f"there are {lines} lines, {properties} of them properties" in page
     navigation = read_properties(files["dgclocalnav"])
     assert navigation["Dgclocalnav.Requires.Scan.Proxy"] == "scan@desk_pc/laser2d0"
@@ -234,7 +234,7 @@ def test_what_hints_say_stays_in_its_line(run: Run, tmp_path: Path) -> None:
 
 
 def test_the_example_of_the_page(run: Run, tmp_path: Path) -> None:
-    page = (ROOT / "docs" / "generation.md").read_text("utf-8")
+    page = (ROOT / "docs" / "middlewares.md").read_text("utf-8")
     (example,) = re.findall(r"```yaml\n(component_types:.*?)```", page, re.DOTALL)
     project = write_project(tmp_path, "front: {is: laser2d}", f"types: {{Scan: }}\n{example}")
     ran = run("generate", "orca", "-C", project, "-o", tmp_path / "ws", "--keep-going")

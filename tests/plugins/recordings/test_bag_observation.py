@@ -2,15 +2,17 @@
 
 from __future__ import annotations
 
+import shutil
 import struct
 from collections.abc import Sequence
+from contextlib import nullcontext
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 
 import pytest
 from rosbags.interfaces import Qos, QosDurability, QosHistory, QosLiveliness, QosReliability, QosTime
 from rosbags.rosbag1 import Writer as Writer1
-from rosbags.rosbag2 import StoragePlugin
+from rosbags.rosbag2 import CompressionFormat, CompressionMode, StoragePlugin
 from rosbags.rosbag2 import Writer as Writer2
 from rosbags.typesys import Stores, get_typestore
 
@@ -126,7 +128,7 @@ def test_a_bag_as_designed_has_no_findings(tmp_path: Path, storage: StoragePlugi
     report = compare(tmp_path, folder)
     assert show_findings(report.reported.findings) == []
     comparison = report.comparisons[0]
-    assert (comparison.endpoints, comparison.seen_endpoints) == (3, 2)
+    assert (comparison.topics, comparison.seen_topics) == (3, 2)
     scan = comparison.robot.topics[0]
     assert (scan.count, scan.duration, scan.longest_gap, scan.largest_size, scan.frames) == (
         100,
@@ -259,3 +261,74 @@ def test_broken_bags_are_refused_in_words(tmp_path: Path) -> None:
     }.items():
         with pytest.raises(ForeignFileError, match=words):
             observe_robot(tmp_path / name, tmp_path, ObservationOptions())
+
+
+@pytest.mark.skipif(not Path("/proc/self/statm").exists(), reason="only Linux bounds the memory of a process")
+@pytest.mark.parametrize("kind", ["bag of ROS 1", "messages", "chunks"])
+def test_what_unpacks_to_very_much_is_refused(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, kind: str) -> None:
+    """A bag of some kB, of which a part is 300 MB once it is unpacked; memory is as large as before afterwards."""
+    monkeypatch.setattr(bag_observation, "MAX_UNPACKED_BYTES", 200_000_000)
+    data = bytes(300_000_000)
+    if kind == "bag of ROS 1":
+        path = tmp_path / "robot.bag"
+        writer = Writer1(path)
+        writer.set_compression(Writer1.CompressionFormat.LZ4)
+        with writer:
+            one = writer.add_connection("/a", "std_msgs/msg/String", typestore=get_typestore(Stores.ROS1_NOETIC))
+            writer.write(one, 10**18, data)
+    else:
+        path = tmp_path / "bag"
+        storage = StoragePlugin.MCAP if kind == "chunks" else StoragePlugin.SQLITE3
+        mode = CompressionMode.STORAGE if kind == "chunks" else CompressionMode.MESSAGE
+        other = Writer2(path, version=9, storage_plugin=storage)
+        other.set_compression(mode, CompressionFormat.ZSTD)
+        with other:
+            two = other.add_connection("/a", "std_msgs/msg/String", typestore=get_typestore(Stores.ROS2_JAZZY))
+            other.write(two, 10**18, data)
+            other.write(two, 2 * 10**18, b"")
+    del data
+    assert sum(each.stat().st_size for each in [path, *tmp_path.rglob("*")] if each.is_file()) < 5_000_000
+    with pytest.raises(ForeignFileError) as refused:
+        observe_robot(path, tmp_path, ObservationOptions(distro="jazzy"))
+    assert refused.value.message == "a part of it unpacks to more than 200 MB"
+    assert len(bytes(250_000_000)) == 250_000_000
+
+
+@pytest.mark.parametrize("mode", [CompressionMode.FILE, CompressionMode.MESSAGE])
+def test_what_unpacks_to_many_times_its_size_is_refused(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, mode: CompressionMode
+) -> None:
+    """Each message is small, and a file is refused before anything of it is written out (`copyfileobj`)."""
+    monkeypatch.setattr(bag_observation, "MAX_UNPACKED_BYTES", 20_000_000)
+    monkeypatch.setattr(bag_observation, "_limit_memory", nullcontext)
+    writer = Writer2(tmp_path / "bag", version=9, storage_plugin=StoragePlugin.MCAP)
+    writer.set_compression(mode, CompressionFormat.ZSTD)
+    with writer:
+        two = writer.add_connection("/a", "std_msgs/msg/String", typestore=get_typestore(Stores.ROS2_JAZZY))
+        for number in range(30):
+            writer.write(two, 10**18 + number, bytes(1_000_000))
+    monkeypatch.setattr(shutil, "copyfileobj", None)
+    with pytest.raises(ForeignFileError, match=r"it unpacks to more than 2\d MB"):
+        observe_robot(tmp_path / "bag", tmp_path, ObservationOptions(distro="jazzy"))
+
+
+def test_packed_files_are_read(tmp_path: Path) -> None:
+    writer = Writer2(tmp_path / "bag", version=9)
+    writer.set_compression(CompressionMode.FILE, CompressionFormat.ZSTD)
+    with writer:
+        two = writer.add_connection("/a", "std_msgs/msg/String", typestore=get_typestore(Stores.ROS2_JAZZY))
+        for number in range(2):
+            writer.write(two, 10**18 + number, bytes(1000))
+    (tmp_path / "bag" / "other.zst").write_bytes(b"\x28\xb5\x2f\xfd broken, and no part of the bag")
+    robot = observe_robot(tmp_path / "bag", tmp_path, ObservationOptions(distro="jazzy"))
+    assert [(each.name, each.count) for each in robot.topics] == [("/a", 2)]
+
+
+def test_metadata_that_name_a_file_twice_are_refused(tmp_path: Path) -> None:
+    bag = Bag().write(tmp_path / "bag")
+    metadata = bag / "metadata.yaml"
+    text = metadata.read_text(encoding="utf-8")
+    assert text.count("  - bag.db3\n") == 1
+    metadata.write_text(text.replace("  - bag.db3\n", "  - bag.db3\n  - ./bag.db3\n"), encoding="utf-8")
+    with pytest.raises(ForeignFileError, match=r"it names the file `bag\.db3` twice"):
+        observe_robot(bag, tmp_path, ObservationOptions(distro="jazzy"))

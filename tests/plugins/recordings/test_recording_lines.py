@@ -26,5 +26,5 @@ def test_oddities_of_one_kind_are_one_finding_at_the_first() -> None:
     oddities = Oddities(RecordingSource("r", io.BytesIO()))
     oddities.note("slip", 7)
     oddities.note("slip", 9, 2000)
-    found = list(oddities.diagnose({"slip": OddityText("wrong-value", "{count} slip{s}", Severity.NOTE)}))
+    found = list(oddities.diagnose({"slip": OddityText("{count} slip{s}", severity=Severity.NOTE)}))
     assert [(str(d.span), d.message) for d in found] == [("r:7:1", "2,001 slips")]

@@ -13,6 +13,7 @@ from tests.outside_tools import find_tool, run_judge
 
 STAND_INS = Path(__file__).parent / "rclcpp_stubs"
 _MESSAGE = re.compile(r"\b([a-z]\w*)::(msg|srv|action)::([A-Z]\w*)")
+_FIELD = re.compile(r"^([\w/]+(?:\[\])?) (\w+)$", re.MULTILINE)
 _PARTS = {"msg": (), "srv": ("Request", "Response"), "action": ("Goal", "Result", "Feedback")}
 _TYPES = {"bool": "bool", "int": "int64_t", "double": "double", "string": "std::string"}
 _KEYS = {"type", "default_value", "description", "read_only", "validation"}
@@ -29,10 +30,11 @@ def compile_package(package: Path, folder: Path, include_folders: list[Path] | N
     lines = []
     for node in sorted(package.glob("src/*_node.cpp")):
         module = node.stem.removesuffix("_node")
-        lines += [f"#define main {module}_main", f"#define are_among {module}_are_among"]
+        own_names = ("main", "are_among", "tell_values")
+        lines += [f"#define {each} {module}_{each}" for each in own_names]
         names = [f"src/{module}_{each}.cpp" for each in ("behaviour", "node", "main")]
         lines += [f'#include "{package / each}"' for each in (*names, f"test/test_{module}_node.cpp")]
-        lines += ["#undef main", "#undef are_among"]
+        lines += [f"#undef {each}" for each in own_names]
     unit = folder / f"{package.name}.cpp"
     unit.write_text("\n".join(lines) + "\n", encoding="utf-8")
     own = [package / "include", headers]
@@ -51,7 +53,7 @@ def compile_package(package: Path, folder: Path, include_folders: list[Path] | N
 
 
 def write_messages(package: Path, headers: Path) -> None:
-    """Write a stand-in for each message that a package uses: its name and its parts, without fields."""
+    """Write a stand-in for each message that a package uses: its name and its parts, with the fields of generated ones."""
     for path in (*package.rglob("*.hpp"), *package.rglob("*.cpp")):
         for space, kind, name in _MESSAGE.findall(path.read_text(encoding="utf-8")):
             if space == "rcl_interfaces":
@@ -59,8 +61,15 @@ def write_messages(package: Path, headers: Path) -> None:
             header = headers / space / kind / f"{name_header(name)}.hpp"
             header.parent.mkdir(parents=True, exist_ok=True)
             parts = "".join(_declare_message(part) for part in _PARTS[kind])
-            body = f"struct {name} {{\n{parts}}};\n" if parts else _declare_message(name)
-            header.write_text(f"#pragma once\n#include <memory>\nnamespace {space}::{kind} {{\n{body}}}\n")
+            definition = package.parent / space / kind / f"{name}.{kind}"
+            text = definition.read_text(encoding="utf-8") if definition.is_file() and not parts else ""
+            fields = [(_name_field_type(space, each), field) for each, field in _FIELD.findall(text)]
+            body = f"struct {name} {{\n{parts}}};\n" if parts else _declare_message(name, fields)
+            used = [match.groups() for each, _ in fields if (match := _MESSAGE.search(each))]
+            includes = ["<memory>", "<string>", "<vector>"]
+            includes += [f'"{other}/msg/{name_header(each)}.hpp"' for other, _, each in used]
+            lines = ["#pragma once", *(f"#include {each}" for each in includes), f"namespace {space}::{kind} {{", body]
+            header.write_text("\n".join(lines) + "}\n", encoding="utf-8")
 
 
 def name_header(name: str) -> str:
@@ -73,11 +82,21 @@ def name_header(name: str) -> str:
     return written
 
 
-def _declare_message(name: str) -> str:
+def _declare_message(name: str, fields: list[tuple[str, str]] | None = None) -> str:
+    members = "".join(
+        f"  using _{field}_type = {field_class};\n  _{field}_type {field};\n" for field_class, field in fields or ()
+    )
     return (
-        f"struct {name} {{\n  using SharedPtr = std::shared_ptr<{name}>;\n"
+        f"struct {name} {{\n{members}  using SharedPtr = std::shared_ptr<{name}>;\n"
         f"  using ConstSharedPtr = std::shared_ptr<const {name}>;\n  using UniquePtr = std::unique_ptr<{name}>;\n}};\n"
     )
+
+
+def _name_field_type(package: str, field_type: str) -> str:
+    base = field_type.removesuffix("[]")
+    plain = {"string": "std::string", "float64": "double"}
+    named = plain.get(base) or (base if "/" in base else f"{package}/{base}").replace("/", "::msg::")
+    return f"std::vector<{named}>" if field_type.endswith("[]") else named
 
 
 def write_parameter_headers(package: Path, headers: Path) -> None:

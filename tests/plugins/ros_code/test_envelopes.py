@@ -2,10 +2,14 @@
 
 from __future__ import annotations
 
+import ast
 import json
+import shutil
 import subprocess
 import sys
 from pathlib import Path
+from types import SimpleNamespace
+from typing import Any
 
 import pytest
 
@@ -15,8 +19,9 @@ from archgen.plugins.ros_code.node_programs import make_view
 from archgen.views.generation.generation_context import GenerationContext
 from archgen.views.generation.program_parts import is_envelope
 from tests.outside_tools import run_judge
+from tests.plugins.ros_code.test_ros2_cpp_builds import compile_all, judge_format
 from tests.plugins.ros_code.test_ros2_python import AMENT_FLAKE8
-from tests.ros_2_kilted import build_interfaces, kilted_environment, make_kilted_python
+from tests.ros_2_kilted import KILTED_FOLDER, build_interfaces, kilted_environment, make_kilted_python
 from tests.ros_environment import NEWEST_PYTHON, interrupt_node
 from tests.running import archgen_here
 
@@ -40,10 +45,27 @@ types:
 """
 
 
-def write_enveloped(folder: Path, distro: str, *passes: str) -> Path:
+# Payloads of each kind, a parameter that says whom to hear, and what comes before a node is active.
+CPP_ROBOT = (
+    ROBOT.replace("namespace: /arm}", "namespace: /arm, language: cpp}")
+    .replace("name: Words}", "name: Words, count: Count, many: Many}")
+    .replace(
+        "right.state]}}",
+        "right.state], words: planner.name, count: planner.count, many: planner.many}, "
+        "parameters: {senders.words: [/x]}, node: {language: cpp, threads: 2}}\n"
+        "      keeper: {inputs: {target: planner.target, name: planner.name}, node: {language: cpp, kind: [lifecycle, composable], "
+        "subscribes: {target: {qos: {durability: transient_local}}}}}",
+    )
+    + """  Count: {fields: {sender: string, payload: float64}}
+  Many: {fields: {sender: string, payload: "Target[]"}}
+"""
+)
+
+
+def write_enveloped(folder: Path, distro: str, *passes: str, robot: str = ROBOT) -> Path:
     """Return a folder with the project behind the pass `envelope` and others."""
     (folder / "p").mkdir()
-    (folder / "p" / "archgen.yaml").write_text(ROBOT.replace("DISTRO", distro), encoding="utf-8")
+    (folder / "p" / "archgen.yaml").write_text(robot.replace("DISTRO", distro), encoding="utf-8")
     archgen_here("transform", "envelope", *passes, "-o", folder / "e", cwd=folder / "p", status=0)
     return folder / "e"
 
@@ -90,6 +112,71 @@ def test_it_is_written_as_ros_developers_write(backend: str, distro: str, tmp_pa
     assert done.stdout == ""
 
 
+def test_an_empty_name_is_nobody(tmp_path: Path) -> None:
+    """ROS has no empty list of texts as a default: nobody is an empty text."""
+    project = write_enveloped(tmp_path, "jazzy")
+    archgen_here("generate", "ros2_python", "-o", tmp_path / "w", cwd=project, status=0)
+    (path,) = (tmp_path / "w").rglob("motor_node.py")
+    methods = (
+        each for each in ast.walk(ast.parse(path.read_text(encoding="utf-8"))) if isinstance(each, ast.FunctionDef)
+    )
+    method = next(each for each in methods if each.name == "is_expected")
+    names: dict[str, Any] = {}
+    exec(compile(ast.Module([method], []), str(path), "exec"), names)  # noqa: S102 - just generated
+    said: list[str] = []
+    logger = SimpleNamespace(warning=lambda text, **_: said.append(text))
+
+    def is_expected(known: list[str], sender: str) -> object:
+        node = SimpleNamespace(senders={"target": known}, get_logger=lambda: logger)
+        return names["is_expected"](node, "target", "/target", sender, {})
+
+    assert [is_expected(known, "") for known in ([""], ["/a"], ["*"])] == [False, False, True]
+    assert [is_expected(["/a"], "/a"), is_expected(["/a"], "/b")] == [True, False]
+    assert said[-1] == "refused a message for target from '/b': nobody expects it"
+
+
+def generate_cpp(folder: Path, distro: str, *options: str) -> Path:
+    project = write_enveloped(folder, distro, robot=CPP_ROBOT)
+    for backend in (("ros_interfaces",), ("ros2_cpp", *options)):
+        archgen_here("generate", *backend, "-o", folder / "w", cwd=project, status=0)
+    return folder / "w"
+
+
+@pytest.mark.build
+@pytest.mark.parametrize(
+    ("distro", "options"), [("jazzy", ()), ("kilted", ()), ("kilted", ("--option", "stand_ins=true"))]
+)
+def test_nodes_in_cpp_send_their_name_and_hear_whom_they_may(
+    distro: str, options: tuple[str, ...], tmp_path: Path
+) -> None:
+    workspace = generate_cpp(tmp_path, distro, *options)
+    compile_all(workspace, tmp_path)
+    judge_format(workspace)
+    node = (workspace / "src" / "rt_arm" / "src" / "motor_node.cpp").read_text(encoding="utf-8")
+    assert "envelope->sender = get_fully_qualified_name();" in node
+    assert ('own_name == "/arm/left"' in node, 'target_senders_ = {"/arm/planner"};' in node) == (True, True)
+    # As in Python, ROS is asked from Kilted on who published a message.
+    assert ("publisher_gid" in node) == (distro == "kilted")
+    own = (workspace / "src" / "rt_arm" / "include" / "rt_arm" / "motor_behaviour.hpp").read_text(encoding="utf-8")
+    assert "void receive_target(rt_msgs::msg::Target::ConstSharedPtr message);" in own
+    assert "envelope" not in own
+
+
+@pytest.mark.ros
+@pytest.mark.build
+def test_nodes_in_cpp_compile_with_real_envelopes(tmp_path: Path) -> None:
+    if sys.version_info[:2] > NEWEST_PYTHON or sys.platform != "linux":
+        pytest.skip(f"there is no ROS 2 for {sys.platform} and Python {sys.version.split()[0]}")
+    make_kilted_python()
+    workspace = generate_cpp(tmp_path, "kilted")
+    prefix = build_interfaces(workspace / "src" / "rt_msgs", tmp_path)
+    folders = [
+        each for root in (KILTED_FOLDER, prefix) for each in sorted((root / "include").iterdir()) if each.is_dir()
+    ]
+    shutil.rmtree(workspace / "src" / "rt_msgs")
+    compile_all(workspace, tmp_path, folders)
+
+
 MOTOR = """
 from rt_msgs.msg import State
 
@@ -133,9 +220,10 @@ while '/stranger sent it' not in open(log).read() and time.monotonic() < end:
 for _ in range(5):
     send(forged, '/stranger', 2.0)
     send(forged, '/arm/planner', 3.0)
+    send(forged, '', 5.0)
 while not has_answer(4.0) and time.monotonic() < end:
     send(real, '/arm/planner', 4.0)
-known = [position for position in (2.0, 3.0, 4.0) if has_answer(position)]
+known = [position for position in (2.0, 3.0, 4.0, 5.0) if has_answer(position)]
 print(json.dumps([known, sorted({each.sender for each in answers})]))
 """
 

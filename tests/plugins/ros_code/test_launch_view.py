@@ -30,8 +30,8 @@ def test_the_package_is_that_of_all_parts(tmp_path: Path, ros: int) -> None:
     architecture = check_project(tmp_path / "p.yaml").architecture
     whole = make_view(GenerationContext(architecture), ros).data
     (package,) = whole["packages"]
-    assert (package["dependencies"], package["has_parameters"]) == (["arms", "cams"], True)
-    assert package["script"] == {1: "run_program", 2: "set_states"}[ros]
+    assert (package["rosdep_keys"], package["has_parameters"]) == (["arms", "cams"], True)
+    assert package["scripts"] == [{1: "run_program", 2: "set_states"}[ros]]
     for host in ("left", "right"):
         part = make_view(GenerationContext(architecture, host=host), ros).data
         assert part["packages"] == [package]

@@ -9,6 +9,8 @@ import pytest
 
 from archgen.pipeline import check_project
 from archgen.plugins.ros_code.node_programs import make_view
+from archgen.products.output_options import OutputOptions
+from archgen.products.workspace_product import write_workspace
 from archgen.views.generation.generation_context import GenerationContext
 
 
@@ -52,3 +54,98 @@ def make_programs(tmp_path: Path, written_nodes: str, **part: Any) -> Any:  # no
     options = {"language": "python"}
     context = GenerationContext(check_project(tmp_path / "p.yaml").architecture, options=options, **part)
     return make_view(context)
+
+
+ORCHARD = """\
+archgen: 1
+project: {id: orchard, title: Orchard}
+ros: {distro: jazzy}
+component_types:
+  smoother:
+    generic: [T]
+    functionality: Smooths.
+    inputs: {raw: T}
+    outputs: {smooth: T}
+    node: {package: filters, executable: smoother}
+  arm: {functionality: Picks., inputs: {fruits: Words}, outputs: {state: Words}, parameters: {force: 20.0}}
+groups:
+  g:
+    components:
+      cam: {outputs: {words: Words, level: Level, bad: Bad}}
+      s1: {is: smoother<Words>, inputs: {raw: cam.words}}
+      s2: {is: smoother<Level>, inputs: {raw: cam.level}}
+      node: {inputs: {words: s1.smooth, bad: cam.bad}, node: {language: cpp}}
+      lifecycle: {inputs: {words: s1.smooth}}
+      zleft: {is: arm, inputs: {fruits: cam.words}, parameters: {force: 25.0}}
+types: {Words: std_msgs/msg/String, Level: std_msgs/msg/Float32, Bad: {fields: {class: int32}}}
+"""
+SECOND_ARM = (
+    "      right: {is: arm, inputs: {fruits: s1.smooth}, parameters: {force: 35.0}, node: {namespace: /right}}\ntypes"
+)
+
+
+def generate_all(folder: Path, text: str, workspace: Path) -> dict[str, str]:
+    """Return all that the backends of ROS 2 write, by path."""
+    folder.mkdir()
+    (folder / "archgen.yaml").write_text(text, encoding="utf-8")
+    for backend in ("ros_interfaces", "ros2_python", "ros2_cpp", "ros2_launch"):
+        write_workspace(check_project(folder), OutputOptions(), backend, workspace)
+    files = (each for each in sorted((workspace / "src").rglob("*")) if each.is_file())
+    return {str(each.relative_to(workspace)): each.read_text(encoding="utf-8") for each in files}
+
+
+def test_both_languages_stand_in_one_group(tmp_path: Path) -> None:
+    files = generate_all(tmp_path / "p", ORCHARD, tmp_path / "w")
+    assert "src/orchard_g/setup.py" in files
+    assert "src/orchard_g_cpp/src/node_node.cpp" in files
+    (host,) = (text for path, text in files.items() if "/launch/hosts/" in path)
+    assert 'pkg="orchard_g_cpp" exec="node"' in host
+    assert 'pkg="orchard_g" exec="lifecycle"' in host
+
+
+def test_what_a_container_loads_is_what_is_made(tmp_path: Path) -> None:
+    """Standing in a container, or having a class, says as much of a node as its kind."""
+    nodes = "containers: {box: }\nnodes:\n  lifecycle: {implements: lifecycle, container: box}\n  cam: {implements: cam, plugin: 'orchard::Cam'}\n"
+    files = generate_all(tmp_path / "p", ORCHARD + nodes, tmp_path / "w")
+    (host,) = (text for path, text in files.items() if "/launch/hosts/" in path)
+    assert 'plugin="orchard_g_cpp::Lifecycle"' in host
+    assert (
+        "RCLCPP_COMPONENTS_REGISTER_NODE(orchard_g_cpp::Lifecycle)" in files["src/orchard_g_cpp/src/lifecycle_node.cpp"]
+    )
+    assert 'pkg="orchard_g_cpp" exec="cam"' in host
+    assert "RCLCPP_COMPONENTS_REGISTER_NODE(orchard::Cam)" in files["src/orchard_g_cpp/src/cam_node.cpp"]
+    assert not {"src/orchard_g/orchard_g/cam_node.py", "src/orchard_g/orchard_g/lifecycle_node.py"} & files.keys()
+
+
+def test_generic_programs_keep_their_ports(tmp_path: Path) -> None:
+    files = generate_all(tmp_path / "p", ORCHARD, tmp_path / "w")
+    assert "self.raw_subscription" in files["src/filters/filters/smoother_words_node.py"]
+    assert "import Float32" in files["src/filters/filters/smoother_level_node.py"]
+
+
+def test_no_class_hides_what_its_module_imports(tmp_path: Path) -> None:
+    files = generate_all(tmp_path / "p", ORCHARD, tmp_path / "w")
+    assert "class LifecycleProgramNode(Node):" in files["src/orchard_g/orchard_g/lifecycle_node.py"]
+    assert "class LifecycleProgram:" in files["src/orchard_g/orchard_g/lifecycle.py"]
+
+
+def test_a_message_that_cannot_be_is_refused_by_its_nodes_too(tmp_path: Path) -> None:
+    files = generate_all(tmp_path / "p", ORCHARD, tmp_path / "w")
+    assert not [path for path in files if path.endswith("Bad.msg")]
+    assert "Bad" not in files["src/orchard_g/orchard_g/cam_node.py"]
+    said = [each.message for each in make_view(GenerationContext(check_project(tmp_path / "p").architecture)).findings]
+    assert said == [
+        "`g.cam.bad` of the node `cam` is left out: `ros_interfaces` generates no `orchard_msgs/msg/Bad`, and says why"
+    ]
+
+
+def test_a_further_instance_changes_no_program(tmp_path: Path) -> None:
+    one = generate_all(tmp_path / "p", ORCHARD, tmp_path / "w")
+    two = generate_all(tmp_path / "q", ORCHARD.replace("\ntypes", "\n" + SECOND_ARM), tmp_path / "v")
+    changed = {path for path in one if one[path] != two[path] and not path.startswith("src/orchard_bringup/")}
+    # The nodes of a package are listed in its README.
+    assert changed == {"src/orchard_g/README.md"}
+    for path, text in one.items():
+        if path.endswith(("_node.py", ".hpp", "_node.cpp")):
+            assert "'/" not in text, path
+            assert '"/' not in text, path

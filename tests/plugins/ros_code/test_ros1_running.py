@@ -385,12 +385,12 @@ def test_catkin_builds_what_is_generated(folder: Path, robot_workspace: Path) ->
     (folder / "p" / "archgen.yaml").write_text(
         ROBOT.replace("Words: std_msgs/msg/String", "Words: {fields: {data: string}}"), encoding="utf-8"
     )
-    generate_workspace(folder / "p", robot_workspace)
     for name in ("det", "user"):
         own = robot_workspace / "src" / "rt_g" / "src" / "rt_g" / f"{name}.py"
         own.write_text(
             own.read_text(encoding="utf-8").replace("std_msgs.msg import String", "rt_msgs.msg import Words as String")
         )
+    generate_workspace(folder / "p", robot_workspace)
     environment = ros_1_environment(folder, folder, find_free_port())
     for name in ("PYTHONPATH", "ROS_DISTRO", "ROS_PACKAGE_PATH"):
         del environment[name]

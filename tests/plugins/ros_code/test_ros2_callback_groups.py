@@ -66,7 +66,7 @@ class Watched(brain_node.Brain):
 brain_node.Brain = Watched
 rclpy.init()
 node = brain_node.BrainNode()
-images = node.create_publisher(String, '/g/cam/image', 10)
+images = node.create_publisher(String, '/stop_image', 10)
 node.create_timer(0.01, lambda: images.publish(String()), callback_group=ReentrantCallbackGroup())
 executor = MultiThreadedExecutor(num_threads=4)
 executor.add_node(node)

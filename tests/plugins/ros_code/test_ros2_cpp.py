@@ -94,9 +94,9 @@ def test_a_program_has_what_cpp_asks_for(tmp_path: Path) -> None:
     user, both = programs["user"], programs["both"]
     assert (user["cpp_namespace"], user["cpp_class"], user["cpp_guard"]) == ("people", "Asker", "RT_G__USER")
     assert user["cpp_headers"] == ["std_srvs/srv/trigger.hpp", "test_msgs/action/fibonacci.hpp"]
-    assert programs["cam"]["publishers"][1]["cpp_header"] == "sensor_msgs/msg/point_cloud2.hpp"
+    assert programs["cam"]["publishers"][0]["cpp_header"] == "sensor_msgs/msg/point_cloud2.hpp"
     assert both["callback_groups"] == [{"key": "quick", "components": ["g.fast"]}]
-    assert [(each["key"], each["callback_group"]) for each in both["timers"]] == [("slow", ""), ("fast", "quick")]
+    assert [(each["key"], each["callback_group"]) for each in both["timers"]] == [("fast", "quick"), ("slow", "")]
     assert (both["subscriptions"][0]["callback_group"], both["clients"][0]["callback_group"]) == ("", "quick")
     assert programs["det"]["callback_groups"] == []
     assert {each["callback_group"] for each in programs["det"]["subscriptions"]} == {""}
@@ -105,11 +105,11 @@ def test_a_program_has_what_cpp_asks_for(tmp_path: Path) -> None:
 def test_the_library_declares_what_it_can(tmp_path: Path) -> None:
     programs, _ = make_programs(write_project(tmp_path, ROBOT))
     cam = {each["name"]: each["is_in_library"] for each in programs["cam"]["parameters"]}
-    assert [name for name, is_in_library in cam.items() if not is_in_library] == ["lens.class", "greeting", "map_file"]
+    assert [name for name, is_in_library in cam.items() if not is_in_library] == ["greeting", "lens.class", "map_file"]
     rows = [(each["depth"], each["name"]) for each in programs["cam"]["library_rows"]]
-    assert rows == [(0, "rate"), (0, "mode"), (0, "names"), (0, "lens"), (1, "focus"), (0, "size")]
+    assert rows == [(0, "lens"), (1, "focus"), (0, "mode"), (0, "names"), (0, "rate"), (0, "size")]
     (joint,) = programs["motor"]["parameters"]
-    assert (joint["default"], joint["first_value"], joint["is_in_library"]) == (None, "left", True)
+    assert (joint["default"], joint["first_value"], joint["is_in_library"]) == ("left", "left", True)
 
 
 def test_with_both_backends_nothing_is_made_twice(tmp_path: Path) -> None:

@@ -101,7 +101,7 @@ def test_instances_of_one_type_are_one_program(tmp_path: Path) -> None:
     (target,) = motor["subscriptions"]
     assert (target["key"], target["topics"]) == ("target", {"m1": "/perception/found", "m2": "/perception/found"})
     (joint,) = motor["parameters"]
-    assert (joint["name"], joint["type"], joint["default"]) == ("joint", "string", None)
+    assert (joint["name"], joint["type"], joint["default"]) == ("joint", "string", "left")
 
 
 def test_what_exists_or_is_no_python_is_not_generated(tmp_path: Path) -> None:
@@ -150,8 +150,23 @@ def test_messages_of_one_name_are_told_apart(tmp_path: Path) -> None:
     assert "from std_msgs.msg import String as StdMsgsMsgString\n" in node.read_text()
 
 
-def test_it_is_written_as_ros_developers_write(tmp_path: Path) -> None:
-    generate(tmp_path / "p", ROBOT, tmp_path / "w")
+# What waits, is called, and has what was sent before it was active.
+WAITING = ROBOT.replace(
+    "inputs: {image: cam.image, configure",
+    "inputs: {image: cam.image, ask: talker_node.ask, send: talker_node.send, configure",
+)
+WAITING = WAITING.replace("{words: Words}", "{words: Words, ask: Plan, send: Fib}").replace(
+    "qos: sensor_data", "qos: {durability: transient_local}"
+)
+WAITING = WAITING.replace(
+    "    reentrant: true\n",
+    "    subscribes: {image: {qos: {durability: transient_local}}}\n    timing: {rate: 10 Hz, wcet: 1 ms}\n",
+)
+
+
+@pytest.mark.parametrize("text", [ROBOT, WAITING], ids=["reentrant", "waiting"])
+def test_it_is_written_as_ros_developers_write(text: str, tmp_path: Path) -> None:
+    generate(tmp_path / "p", text, tmp_path / "w")
     command = [sys.executable, "-m", "flake8", "--isolated", "--jobs=1", *AMENT_FLAKE8, str(tmp_path / "w")]
     done = run_judge(*command)
     assert done.stdout == ""
@@ -161,7 +176,7 @@ def test_own_code_is_asked_for_what_the_model_gained(tmp_path: Path) -> None:
     generate(tmp_path / "p", ROBOT, tmp_path / "w")
     own = tmp_path / "w" / "src" / "rt_g" / "rt_g" / "det.py"
     own.write_text(own.read_text().replace("receive_image", "take_picture"))
-    assert "receive_image" in generate(tmp_path / "p", ROBOT, tmp_path / "w")
+    assert "receive_image" in generate(tmp_path / "p", ROBOT, tmp_path / "w", 1)
     assert "take_picture" in own.read_text()
 
 
@@ -191,14 +206,11 @@ def test_no_text_breaks_out(text: str, tmp_path: Path) -> None:
     }
     generate(tmp_path / "p", yaml.safe_dump(project, allow_unicode=True), tmp_path / "w")
     files = list((tmp_path / "w").rglob("*.py"))
-    assert len(files) == 5
+    assert len(files) == 7
     for file in files:
         tree = ast.parse(file.read_text(encoding="utf-8"))
         names = {node.id for node in ast.walk(tree) if isinstance(node, ast.Name)}
         assert not names & {"alert", "cmd", "N", "T"}, file
-    (values,) = (tmp_path / "w").rglob("parameters.yaml")
-    read = yaml.safe_load(values.read_text(encoding="utf-8"))
-    assert set(read) == {"/a"}
 
 
 @pytest.fixture
@@ -212,11 +224,12 @@ def ros_python() -> Path:
 def test_the_graph_is_what_the_model_says(ros_python: Path, tmp_path: Path) -> None:
     """Each node runs in a process of its own; another process reads the graph, which holds nothing but the model."""
     generate(tmp_path / "p", ROBOT, tmp_path / "w")
+    archgen_here("generate", "ros2_launch", "-o", tmp_path / "w", "--keep-going", cwd=tmp_path / "p")
     package = tmp_path / "w" / "src" / "rt_g"
     environment = ros_environment(61, tmp_path) | {"PYTHONPATH": str(package)}
     tests = [str(ros_python), "-m", "pytest", "-q", "-p", "no:cacheprovider", str(package / "test")]
     done = run_judge(*tests, env=environment)
-    assert re.search(r"\b1[0-9] passed", done.stdout)
+    assert re.search(r"\b20 passed", done.stdout)
 
     programs, _ = make_programs(tmp_path / "p", ROBOT)
     processes: list[subprocess.Popen[bytes]] = []
@@ -227,7 +240,8 @@ def test_the_graph_is_what_the_model_says(ros_python: Path, tmp_path: Path) -> N
                 words = ["-r", f"__node:={node['name']}", "-r", f"__ns:={node['namespace']}"]
                 for remap in node["remaps"]:
                     words += ["-r", f"{remap['own_name']}:={remap['name']}"]
-                words += ["--params-file", str(package / "config" / "parameters.yaml")]
+                values = tmp_path / "w" / "src" / "rt_bringup" / "config" / f"{node['id']}.yaml"
+                words += ["--params-file", str(values)] if values.exists() else []
                 module = f"import sys; from rt_g.{program['module']}_node import main; main(sys.argv)"
                 processes.append(
                     subprocess.Popen([str(ros_python), "-c", module, "--ros-args", *words], env=environment)  # noqa: S603
@@ -246,6 +260,34 @@ def test_the_graph_is_what_the_model_says(ros_python: Path, tmp_path: Path) -> N
                 use
             ], (name, use)
     assert observed["qualities"]["/camera/image"] == [["cam", "BEST_EFFORT", "VOLATILE"]]
+
+
+@pytest.mark.ros
+def test_a_program_whose_class_lacks_a_method_does_not_start_and_others_hear_of_parameters(
+    ros_python: Path, tmp_path: Path
+) -> None:
+    generate(tmp_path / "p", ROBOT, tmp_path / "w")
+    package = tmp_path / "w" / "src" / "rt_g"
+    environment = ros_environment(64, tmp_path) | {"PYTHONPATH": str(package)}
+    cam, det = (package / "rt_g" / f"{name}.py" for name in ("cam", "det"))
+    det.write_text(det.read_text().replace("receive_image", "take_picture"), encoding="utf-8")
+    run = [
+        str(ros_python),
+        "-c",
+        "import sys; from rt_g.det_node import DetNode, main, rclpy; rclpy.init();DetNode().on_configure(None)",
+    ]
+    done = subprocess.run(run, env=environment, capture_output=True, text=True, check=False, timeout=120)  # noqa: S603
+    assert done.returncode == 1
+    assert done.stderr.splitlines()[-1] == "/det does not start: Det in det.py lacks receive_image"
+    assert "Traceback" not in done.stderr
+    cam.write_text(
+        f"{cam.read_text()}\n    def on_parameters(self, values):\n        print(values)\n", encoding="utf-8"
+    )
+    code = (
+        "import rclpy; from rclpy.parameter import Parameter; from rt_g.cam_node import CamNode; rclpy.init(); node = CamNode();"
+        "node.set_parameters([Parameter('rate', value=12.0), Parameter('mode', value='wrong')])"
+    )
+    assert run_judge(str(ros_python), "-c", code, env=environment).stdout == "{'rate': 12.0}\n"
 
 
 def list_expected(program: dict[str, Any], node_id: str) -> dict[str, set[tuple[str, str]]]:

@@ -16,6 +16,7 @@ from archgen.plugins.ros_code.node_programs import make_view
 from archgen.products.output_options import OutputOptions
 from archgen.products.workspace_product import write_workspace
 from archgen.views.generation.generation_context import GenerationContext
+from tests.judged_projects import judge_ramcip
 from tests.outside_tools import run_judge
 from tests.plugins.ros_code.test_ros2_python import is_ros_own, list_expected
 from tests.ros_environment import NEWEST_PYTHON, make_ros_python, ros_environment
@@ -73,6 +74,7 @@ def test_all_planned_nodes_run_as_the_model_says(tmp_path: Path) -> None:
         pytest.skip(f"there is no ROS 2 for {sys.platform} and Python {sys.version.split()[0]}")
     python = str(make_ros_python())
     project = check_project(ROOT / "example_ramcip")
+    write_workspace(project, OutputOptions(), "ros2_launch", tmp_path / "w")
     result = write_workspace(project, OutputOptions(), "ros2_python", tmp_path / "w")
     assert result.findings == ()
     programs: list[dict[str, Any]] = make_view(GenerationContext(project.architecture)).data["programs"]
@@ -118,8 +120,8 @@ def list_starts(programs: list[dict[str, Any]], source: Path) -> list[dict[str, 
     """Return what each node is started with: names, remaps, and the values of its parameters."""
     starts = []
     for program in programs:
-        values = source / program["package"] / "config" / "parameters.yaml"
         for node in program["nodes"]:
+            values = source / "ramcip_bringup" / "config" / f"{node['id']}.yaml"
             words = ["-r", f"__node:={node['name']}", "-r", f"__ns:={node['namespace']}"]
             for remap in node["remaps"]:
                 words += ["-r", f"{remap['own_name']}:={remap['name']}"]
@@ -132,6 +134,6 @@ def list_starts(programs: list[dict[str, Any]], source: Path) -> list[dict[str, 
 
 def test_what_has_no_wheel_is_known_by_name() -> None:
     """A package that is stood in for here is one of those that RAMCIP uses."""
-    programs = make_view(GenerationContext(check_project(ROOT / "example_ramcip").architecture)).data["programs"]
+    programs = make_view(GenerationContext(judge_ramcip().architecture)).data["programs"]
     used_packages = {message.partition("/")[0] for message in list_messages(programs)}
     assert used_packages >= WITHOUT_WHEELS

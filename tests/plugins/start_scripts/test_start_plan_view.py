@@ -42,7 +42,7 @@ nodes:
   strange: {kind: program, host: robot, start: {ready: {service: /strange}}}
 containers: {box: {host: robot}}
 hosts:
-  desk: {hints: {start: {address: 10.0.0.2}}}
+  desk: {address: 10.0.0.2}
   robot: {hints: {start: {image: "robot:2"}}}
 """
 
@@ -155,7 +155,7 @@ def test_jobs_wait_for_what_shows_that_something_is_up(tmp_path: Path) -> None:
     [
         ("{start: 3}", "the hints of `a` for `start` are no mapping"),
         ("{start: {image: [x]}}", "the hint `image` of `a` for `start` is no text"),
-        ("{start: {adress: x}}", "nobody reads the hint `adress` of `a` for `start`"),
+        ("{start: {imgae: x}}", "nobody reads the hint `imgae` of `a` for `start`"),
         ("{other: {image: x}}", ""),
     ],
 )
@@ -170,8 +170,8 @@ def test_hints_of_another_kind_say_nothing(tmp_path: Path, hints: str, found: st
     assert "".join(each.message for each in findings) == found
     assert [(each.span.line, each.help) for each in findings] in (
         [],
-        [(3, "did you mean `address`?")],
-        [(3, "what is known here is `address` and `image`, each a text")],
+        [(3, "did you mean `image`?")],
+        [(3, "what is known here is `image`, each a text")],
     )
 
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
+import pytest
 from click.testing import CliRunner
 from hypothesis import given, settings
 from hypothesis import strategies as st
@@ -92,6 +93,7 @@ def test_no_bytes_are_too_strange(data: bytes) -> None:
     read(b"Group,Component,Inputs\n" + data)
 
 
+@pytest.mark.slow
 def test_what_archgen_list_writes_comes_back() -> None:
     told: list[tuple[str, bytes]] = []
     for sort in ("components", "groups", "edges", "nodes", "types", "requirements"):

@@ -273,6 +273,7 @@ def make_large_model(kind: str) -> str:
     return "".join(make_element("DataType", f"d{n}", make_attribute(f"f{n}", f"d{n + 1}")) for n in range(6_000))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("kind", ["one name", "fields"])
 def test_time_is_in_proportion_to_the_model(tmp_path: Path, kind: str) -> None:
     start = time.process_time()

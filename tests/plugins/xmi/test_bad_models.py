@@ -174,6 +174,22 @@ def test_what_lies_in_other_files_is_noted_and_not_opened(tmp_path: Path) -> Non
     )
 
 
+def test_a_connector_into_a_file_that_is_not_given_says_so(tmp_path: Path) -> None:
+    contents = (
+        '<packagedElement xmi:type="uml:Component" xmi:id="k" name="k">'
+        '<ownedAttribute xmi:type="uml:Port" xmi:id="p" name="p"/>'
+        '<ownedConnector xmi:id="c" name="wire"><end xmi:id="e" role="p"/>'
+        '<end xmi:id="f"><role xmi:type="uml:Port" href="drivers.uml#far_port"/></end></ownedConnector></packagedElement>'
+    )
+    notes = [each for each in read_model(tmp_path, contents).notes if each.kind == "uml:Connector"]
+    assert [(each.message, each.help_line) for each in notes] == [
+        (
+            "the Connector `wire` is not taken: `far_port`, which it joins, lies in a file that is not among those that are read",
+            "give that file, too",
+        )
+    ]
+
+
 def test_several_files_refer_to_one_another(tmp_path: Path) -> None:
     base, robot = tmp_path / "base.uml", tmp_path / "robot.uml"
     base.write_text(write_model('<packagedElement xmi:type="uml:Class" xmi:id="b" name="base"/>'), encoding="utf-8")

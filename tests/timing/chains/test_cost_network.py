@@ -6,8 +6,12 @@ from fractions import Fraction
 
 import pytest
 
+from archgen.frozen import replace
+from archgen.timing.chains.cost_network import CostNetwork
 from archgen.timing.chains.cost_network import _make_scale as make_scale
 from archgen.timing.figures.timing_values import TimingValue
+from archgen.timing.run_analysis import analyse_architecture
+from tests.timing.sketches import read_sketch
 
 
 def read_value(text: str) -> TimingValue:
@@ -62,3 +66,17 @@ def test_a_figure_weighs_its_share_of_the_common_denominator(rows: str, weights:
 def test_a_boundless_figure_outweighs_all_others_together() -> None:
     *others, boundless = weigh_rows("1000000 999999 ?; 7? 3; 12345; inf")
     assert sum(others) * 2 < boundless
+
+
+def test_who_asks_one_analysis_shares_what_its_steps_cost() -> None:
+    model = read_sketch(
+        {"a @p": "period: 10 ms, wcet: 1 ms", "b @p": "trigger: [a], wcet: 1 ms"}, "a>b", "hosts: {p: {cores: 1}}"
+    )
+    analysis = analyse_architecture(model)
+    network = CostNetwork.of_analysis(analysis)
+    assert CostNetwork.of_analysis(analysis) is network
+    assert CostNetwork.of_analysis(replace(analysis)) is not network
+    # What chains name is looked up in the architecture of whoever asks: one that differs may have the same timing.
+    index = network.index_elements(model)
+    assert network.index_elements(model) is index
+    assert network.index_elements(replace(model)) is not index

@@ -18,7 +18,7 @@ from archgen.timing.chains.figure_explanations import explain_word
 from archgen.timing.load.queue_responses import QUEUE_TIERS
 from archgen.timing.load.response_terms import ResponseTerms
 from archgen.timing.run_analysis import analyse_architecture
-from tests.property_sizes import list_seeds
+from tests.property_sizes import list_seeds, mark_further_samples
 from tests.running import RAMCIP
 from tests.timing.hand_reader import read_equations
 from tests.timing.random_styles import random_style_text
@@ -169,7 +169,9 @@ def test_chains_are_the_sums_of_their_terms(case_study: Results) -> None:
     assert len(chains) == 8
 
 
-@pytest.mark.parametrize("share", list_seeds(4))
+# The analysis of the case study without `core:` keys takes seconds: of it are the slow tests.
+@pytest.mark.slow
+@pytest.mark.parametrize("share", range(4))
 def test_on_several_cores_the_own_threads_and_the_time_in_which_all_cores_are_busy_add_up(
     unpinned_case_study: Results, share: int
 ) -> None:
@@ -190,18 +192,17 @@ def test_on_several_cores_the_own_threads_and_the_time_in_which_all_cores_are_bu
     assert min(blocked, added) > 1
 
 
+@pytest.mark.parametrize("study", mark_further_samples(["case_study", "unpinned_case_study"]))
 def test_how_long_messages_wait_to_be_stored_follows_from_the_work_that_is_listed(
-    case_study: Results, unpinned_case_study: Results
+    study: str, request: pytest.FixtureRequest
 ) -> None:
-    counts: list[int] = []
-    for results in (case_study, unpinned_case_study):
-        waits = {name: wait.value or Fraction(0) for name, wait in results.analysis.storing_waits.items()}
-        for name in results.analysis.system.activities:
-            computed = recompute_storing_wait(print_reasons(results, name), name)
-            assert (computed is None) == (not waits.get(name)), name
-            assert computed is None or is_close(computed, waits[name]), (name, computed, waits[name])
-        counts.append(sum(1 for wait in waits.values() if wait))
-    assert min(counts) > 5
+    results: Results = request.getfixturevalue(study)
+    waits = {name: wait.value or Fraction(0) for name, wait in results.analysis.storing_waits.items()}
+    for name in results.analysis.system.activities:
+        computed = recompute_storing_wait(print_reasons(results, name), name)
+        assert (computed is None) == (not waits.get(name)), name
+        assert computed is None or is_close(computed, waits[name]), (name, computed, waits[name])
+    assert sum(1 for wait in waits.values() if wait) > 5
 
 
 @pytest.mark.parametrize(

@@ -6,7 +6,7 @@ from fractions import Fraction
 
 import pytest
 
-from archgen.timing.chains.limit_states import LimitState, find_worst_state, judge_lower_limit, judge_upper_limit
+from archgen.timing.chains.chain_verdicts import LimitState, find_worst_state, judge_lower_limit, judge_upper_limit
 from archgen.timing.figures.timing_values import UNKNOWN_VALUE, TimingValue
 from archgen.timing.figures.value_arithmetic import UNBOUNDED_VALUE, unknown_value
 

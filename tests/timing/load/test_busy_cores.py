@@ -7,7 +7,7 @@ from itertools import product
 
 import pytest
 
-from archgen.timing.load.busy_cores import divide_among_cores, find_blocked_time
+from archgen.timing.load.busy_windows import divide_among_cores, find_blocked_time
 
 
 @pytest.mark.parametrize(

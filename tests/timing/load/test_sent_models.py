@@ -5,8 +5,8 @@ from __future__ import annotations
 import pytest
 
 from archgen.timing.figures.timing_values import UnknownCause
+from archgen.timing.load.event_models import sent_model
 from archgen.timing.load.link_queueing import settle_links
-from archgen.timing.load.sent_models import sent_model
 from archgen.timing.system.system_builder import build_system
 from archgen.timing.system.timing_system import calls_per_activation
 from tests.timing.printed import MS, show_ms

@@ -34,7 +34,14 @@ def draw_to_and_fro(steps: int, hosts: int, cores: int, cost: int) -> tuple[dict
 
 @pytest.mark.parametrize(
     ("steps", "hosts", "cores", "cost", "truth"),
-    [(4, 2, 1, 5, 23), (6, 2, 1, 5, 35), (8, 2, 1, 5, 47), (10, 2, 1, 5, 59), (10, 2, 2, 5, 59), (20, 4, 2, 6, 139)],
+    [
+        (4, 2, 1, 5, 23),
+        (6, 2, 1, 5, 35),
+        (8, 2, 1, 5, 47),
+        (10, 2, 1, 5, 59),
+        (10, 2, 2, 5, 59),
+        pytest.param(20, 4, 2, 6, 139, marks=pytest.mark.slow),
+    ],
 )
 def test_a_chain_to_and_fro_takes_its_own_time(steps: int, hosts: int, cores: int, cost: int, truth: int) -> None:
     model = read_sketch(*draw_to_and_fro(steps, hosts, cores, cost))

@@ -140,6 +140,35 @@ def test_where_no_clock_is_to_blame_a_trigger_is_the_last_resort() -> None:
     assert proposal.best.late == ()
 
 
+def test_who_is_fired_by_each_message_works_oftener_where_nothing_else_is_short_enough() -> None:
+    """Fired by one map in five, the plan waits as long as for its clock."""
+    text = sketch(
+        {"map @p": "period: 200 ms, wcet: 5 ms", "plan @p": "period: 1 s, wcet: 60 ms"},
+        "map>plan",
+        "hosts: {p: {cores: 2}}\nchains: {c: {through: [map, plan], deadline: 500 ms}}",
+    )
+    proposal = propose_for(architecture(text))
+    assert proposal.best.words == "plan fired by each message of its input map, 5 times as often as now"
+    assert proposal.best.late == ()
+
+
+@pytest.mark.parametrize(
+    ("seed", "words"),
+    [
+        # No order, process or trigger at the present rates proves its chains.
+        (83, "fired by each message"),
+        # Neither does a trigger in the order that was best without one.
+        (153, "priorities by rate, none below the chains, n3 fired by each message of its input n1"),
+    ],
+)
+def test_triggers_may_prove_what_no_floor_forbids(seed: int, words: str) -> None:
+    asked = draw_late_system(seed)
+    assert asked is not None
+    proposal = propose_for(asked)
+    assert (proposal.hopeless, proposal.best.late) == ({}, ())
+    assert words in proposal.best.words
+
+
 def test_tries_are_counted_and_the_same_each_time(monkeypatch: pytest.MonkeyPatch) -> None:
     asked = architecture(ROBOT, is_fair=True)
     assert propose_for(asked, 3).is_cut

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from fractions import Fraction
+
 import pytest
 
 from archgen.timing.chains.chain_bounds import bound_all_chains
@@ -127,9 +129,9 @@ def test_one_process_moves_to_an_end_or_by_one_place() -> None:
 @pytest.mark.parametrize(
     ("source", "reader", "choice"),
     [
-        ("period: 100 ms", "period: 200 ms", TriggerChoice("b", "a", 2)),
-        ("period: 100 ms", "period: 290 ms", TriggerChoice("b", "a", 2)),
-        ("period: 100 ms", "rate: 10 Hz", TriggerChoice("b", "a", 1)),
+        ("period: 100 ms", "period: 200 ms", TriggerChoice("b", "a", 2, Fraction(2))),
+        ("period: 100 ms", "period: 290 ms", TriggerChoice("b", "a", 2, Fraction(29, 10))),
+        ("period: 100 ms", "rate: 10 Hz", TriggerChoice("b", "a", 1, Fraction(1))),
         ("period: 100 ms", "period: 50 ms", None),  # it would work less often
         (
             "period: 100 ms, outputs: {out: {conditional: true, max_gap: 200 ms}}",
@@ -149,13 +151,13 @@ def test_a_reader_is_fired_by_what_it_reads_as_often_as_it_works_now(
 
 
 def test_a_trigger_in_words_and_in_files() -> None:
-    assert [str(each) for each in TriggerChoice("b", "a", 2).list_changes()] == [
+    assert [str(each) for each in TriggerChoice("b", "a", 2, Fraction(2)).list_changes()] == [
         "b.timing.trigger=[a]",
         "b.timing.every=2",
     ]
-    assert [str(each) for each in TriggerChoice("b", "a", 1).list_changes()] == ["b.timing.trigger=[a]"]
-    assert TriggerChoice("b", "a", 2).describe() == "b fired by one message in 2 of its input a"
-    assert TriggerChoice("b", "a", 1).describe() == "b fired by each message of its input a"
+    assert [str(each) for each in TriggerChoice("b", "a", 1, Fraction(1)).list_changes()] == ["b.timing.trigger=[a]"]
+    assert TriggerChoice("b", "a", 2, Fraction(2)).describe() == "b fired by one message in 2 of its input a"
+    assert TriggerChoice("b", "a", 1, Fraction(1)).describe() == "b fired by each message of its input a"
 
 
 def test_smaller_configurations_leave_out_a_host_the_tail_a_container_or_a_trigger() -> None:
@@ -165,7 +167,7 @@ def test_smaller_configurations_leave_out_a_host_the_tail_a_container_or_a_trigg
         "slow @p": "period: 1 s, wcet: 1 ms",
     }
     space = _space(nodes, rest=_boxed())
-    choice = TriggerChoice("b", "a", 1)
+    choice = TriggerChoice("b", "a", 1, Fraction(1))
     full = space.rank(RunConfiguration(own_processes=("b",), triggers=(choice,)), "rate")
     words = [space.describe(each) for each in space.list_smaller(full)]
     fired = "b fired by each message of its input a"

@@ -8,7 +8,7 @@ from itertools import pairwise
 
 import pytest
 
-from archgen.views.explorer.column_layout import FlowWeights, place_in_columns, spread_apart
+from archgen.views.explorer.column_layout import FlowWeights, place_in_columns
 
 
 def weights(text: str) -> FlowWeights:
@@ -67,18 +67,3 @@ def test_what_lies_in_a_frame_takes_fewer_columns() -> None:
     outer = max(column for column, _ in place_in_columns(items, flows).values())
     inner = max(column for column, _ in place_in_columns(items, flows, is_inner=True).values())
     assert inner < outer
-
-
-@pytest.mark.parametrize(
-    ("wishes", "heights"),
-    [
-        ([], []),
-        ([3.0], [3.0]),
-        ([0.0, 5.0], [0.0, 5.0]),
-        ([0.0, 0.0], [-0.5, 0.5]),
-        ([0.0, 0.0, 0.0, 9.0], [-1.0, 0.0, 1.0, 9.0]),
-        ([5.0, 0.0], [2.0, 3.0]),  # the order stays
-    ],
-)
-def test_heights_are_as_near_as_can_be_to_the_wished_ones(wishes: list[float], heights: list[float]) -> None:
-    assert spread_apart(wishes) == pytest.approx(heights)

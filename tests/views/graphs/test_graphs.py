@@ -102,6 +102,7 @@ def view(architecture: Architecture = SMALL) -> Lookup:
 def test_the_ids_of_all_graphs() -> None:
     assert [graph.id for graph in make_all_graphs(SMALL)] == [
         "overview",
+        "overview_upright",
         "components",
         "groups/g",
         "groups/h",
@@ -178,6 +179,14 @@ def test_one_type_is_written_once_for_an_output() -> None:
     assert text(draw_component(view(architecture), "g.a")) == ["g.a > >g.b: T x", "g.a > >g.c"]
 
 
+def test_of_hundreds_of_ports_there_is_one_arrow_to_each_neighbour() -> None:
+    wires = [f"g.a.x{at} > {'g.b' if at % 3 else 'h.c'}.i{at}" for at in range(90)]
+    graph = draw_component(view(make("g: a b, h: c", " | ".join(wires))), "g.a")
+    assert text(graph) == ["g.a > >h.c: 30 flows (30)", "g.a > >g.b: 60 flows (60)"]
+    assert (graph.boxes[0].ports_out, graph.boxes[0].lines[-1]) == ((), "90 outputs")
+    assert graph.asked == 90
+
+
 @pytest.mark.parametrize("kind", ["srv", "action"])
 def test_services_and_actions_run_from_client_to_server(kind: str) -> None:
     style = {"srv": "service", "action": "action"}[kind]
@@ -239,6 +248,12 @@ def test_implementation_puts_topics_between_nodes() -> None:
     assert boxes["n_b"].emphasis == "subject"
 
 
+def test_implementation_looks_at_the_topics_of_its_nodes_alone(monkeypatch: pytest.MonkeyPatch) -> None:
+    lookup = view(low(("n_a", "publishes", "/x"), ("n_b", "subscribes", "/x")))
+    monkeypatch.delattr(Architecture, "list_carriers")  # such a picture is drawn for each of 10,000 components
+    assert text(draw_implementation(lookup, "g.b")) == ["<n_a > topic /x", "topic /x > n_b"]
+
+
 def test_implementation_folds_a_neighbour_all_of_whose_topics_are_taken() -> None:
     uses = [("n_a", "publishes", f"/x{at}") for at in range(3)] + [("n_b", "subscribes", f"/x{at}") for at in range(3)]
     graph = draw_implementation(view(low(*uses)), "g.b")
@@ -251,6 +266,14 @@ def test_implementation_folds_a_neighbour_all_of_whose_topics_are_taken() -> Non
 def test_implementation_draws_each_topic_where_one_is_not_taken() -> None:
     uses = [("n_a", "publishes", f"/x{at}") for at in range(4)] + [("n_b", "subscribes", f"/x{at}") for at in range(3)]
     assert len(draw_implementation(view(low(*uses)), "g.b").arrows) == 6
+
+
+def test_of_hundreds_of_topics_those_of_the_same_nodes_are_one_box() -> None:
+    uses = [(node, use, f"/x{at}") for at in range(90) for node, use in (("n_b", "publishes"), ("n_c", "subscribes"))]
+    graph = draw_implementation(view(low(*uses)), "g.b")
+    assert text(graph) == ["n_b > topic + /x0", "topic + /x0 > >n_c"]
+    assert (graph.boxes[1].title, graph.boxes[1].lines[-1]) == ("90 topics", "and 83 more")
+    assert "star" not in graph.legend
 
 
 def test_ros_frames_nodes_by_group() -> None:
@@ -356,7 +379,7 @@ def test_findings_are_badges() -> None:
         Diagnostic(rule, "text", NO_SPAN, severity, element="g.a")
         for rule, severity in (("one", Severity.NOTE), ("two", Severity.ERROR))
     ]
-    badges = {box.id: box.badge for graph in make_all_graphs(SMALL, findings=found)[1:2] for box in graph.boxes}
+    badges = {box.id: box.badge for graph in make_all_graphs(SMALL, findings=found)[2:3] for box in graph.boxes}
     assert badges == {"g.a": "error", "g.b": None, "h.c": None, "h.d": None}
 
 
@@ -475,12 +498,12 @@ def test_every_graph_says_what_it_shows() -> None:
     graphs = make_all_graphs(replace(robot(), views=views))
     assert {(graph.id.partition("/")[0], "/" in graph.id, graph.kind) for graph in graphs} == {
         ("overview", False, "overview"),
+        ("overview_upright", False, "overview"),
         ("components", False, "components"),
         ("groups", True, "group"),
         ("components", True, "component"),
         ("implementation", True, "implementation"),
         ("ros", False, "ros"),
-        ("hosts", False, "hosts"),
         ("views", True, "view"),
     }
 
@@ -504,7 +527,7 @@ def test_every_picture_runs_as_the_project_says_unless_its_element_says_otherwis
     architecture = pipeline.check_project(tmp_path / "robot.yaml").architecture
     graphs = make_all_graphs(architecture, timed=timed(architecture))
     assert {graph.kind for graph in graphs} >= {
-        *("overview", "components", "group", "component", "implementation", "ros", "hosts", "timing", "view"),
+        *("overview", "components", "group", "component", "implementation", "ros", "timing", "view"),
     }
     assert [graph.id for graph in graphs if graph.direction != "top-bottom"] == [
         *("groups/h", "components/h.c", "implementation/h.c", "timing/h", "views/w"),

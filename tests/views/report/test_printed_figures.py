@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from archgen.views.report.printed_figures import print_inlines, print_section_figures, print_text
-from archgen.views.shapes import Column, Section, Table, Text
+from archgen.views.shapes import Column, Section, Table, Text, make_columns
 
 
 @pytest.mark.parametrize(
@@ -69,3 +69,16 @@ def test_times_that_are_nothing_have_the_unit_of_their_column() -> None:
     assert isinstance(printed, Table)
     assert printed.columns[0].title == "Link, ms"
     assert [row[0][0].text for row in printed.rows] == ["0", "20", "0"]
+
+
+def test_all_times_of_a_table_have_one_unit_and_three_digits() -> None:
+    rows = tuple(
+        ((Text(wait),), (Text(answer),)) for wait, answer in (("2.05 ms", "0.3 ms"), ("1503.2 ms", "<= 40 ms"))
+    )
+    table = Table("t", "T", make_columns(("Waits", 1, "right"), ("Responds", 1, "right")), rows)
+    printed = print_section_figures(Section("s", "S", (table,))).blocks[0]
+    assert isinstance(printed, Table)
+    assert [column.title for column in printed.columns] == ["Waits, ms", "Responds, ms"]
+    cells = [[cell[0].text for cell in row] for row in printed.rows]
+    # As 1.51 s, which a sentence says of it.
+    assert cells == [["2.05", "0.3"], ["1510", "≤ 40"]]

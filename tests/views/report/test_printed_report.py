@@ -17,6 +17,7 @@ from archgen.views.report.printed_figures import print_inlines, print_text
 from archgen.views.report.printed_report import make_printed_report, walk_sections
 from archgen.views.shapes import Outline, Section, Text
 from tests.judged_projects import judge_ramcip
+from tests.property_sizes import mark_further_samples
 from tests.views.report.report_texts import list_block_texts, list_texts
 
 LIST = yaml.safe_load((Path(__file__).parent / "said_elsewhere.yaml").read_text(encoding="utf-8"))
@@ -52,7 +53,7 @@ def _list_all(outline: Outline) -> list[str]:
     return texts + (list(list_block_texts(outline.title_table)) if outline.title_table else [])
 
 
-@pytest.mark.parametrize("ros_place", ["annex", "inline"])
+@pytest.mark.parametrize("ros_place", mark_further_samples(["annex", "inline"]))
 def test_nothing_is_lost_with_everything(views: ProjectViews, ros_place: str) -> None:
     edition = replace(views.edition, ros_place=ros_place)  # type: ignore[arg-type]
     before = report_outline.make_report(views.lookup, edition)
@@ -86,6 +87,7 @@ def test_nothing_of_a_component_moves_to_another(views: ProjectViews) -> None:
     assert {name: texts for name, texts in lost.items() if texts} == {}
 
 
+@pytest.mark.slow
 def test_every_entry_of_the_list_is_needed_and_says_why(views: ProjectViews) -> None:
     texts = _list_all(report_outline.make_report(views.lookup, views.edition))
     assert [

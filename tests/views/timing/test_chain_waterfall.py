@@ -11,6 +11,7 @@ from archgen.pipeline import check_project
 from archgen.views.lookup import Lookup, make_lookup
 from archgen.views.shapes import Bullets, Inlines, Waterfall
 from archgen.views.timing.chain_waterfall import make_waterfall
+from archgen.views.timing.element_timing import link_names
 from archgen.views.timing.timing_lookup import analyse_with_chains
 from tests.judged_projects import judge_ramcip
 
@@ -90,6 +91,20 @@ def test_steps_follow_each_other_with_owner_host_and_reason(tmp_path: Path) -> N
     assert [piece.end for piece in pieces[:-1]] == pytest.approx([piece.start for piece in pieces[1:]])
 
 
+def test_a_reason_leads_to_its_topics_and_nodes(tmp_path: Path) -> None:
+    lookup = look_up(tmp_path)
+    assert lookup.timing is not None
+    topic = next(iter(lookup.architecture.topics))
+    sentence = f"reads {topic} every 1 s, {topic}/other and eye"
+    assert [(run.text, run.ref) for run in link_names(lookup, lookup.timing, sentence)] == [
+        ("reads ", None),
+        (topic, f"topic:{topic}"),
+        (" every 1 s, ", None),
+        (f"{topic}/other", None),
+        (" and eye", None),
+    ]
+
+
 def test_a_piece_that_dwarfs_the_others_is_cut_and_the_others_keep_one_scale(tmp_path: Path) -> None:
     waterfall = fall(look_up(tmp_path, period="30 s", deadline=", deadline: 60 s"))
     pieces = [piece for step in waterfall.steps for piece in step.pieces]
@@ -149,3 +164,22 @@ def test_shares_stay_on_the_axis_and_figures_apart_in_the_case_study() -> None:
         assert 3 <= len(places) <= 9, result.id
         assert all(right - left > 0.05 for left, right in pairwise(places)), result.id
         assert len({text for _, text in waterfall.ticks}) == len(places), result.id
+
+
+def test_each_unknown_pushes_what_follows_and_the_axis_ends_there(tmp_path: Path) -> None:
+    text = ROBOT.replace("period: 100 ms, wcet: 10 ms, bcet: 1 ms", "period: 100 ms")
+    file = tmp_path / "robot.yaml"
+    file.write_text(text.format(period="200 ms", wcet="", deadline=", deadline: 10 s"), encoding="utf-8")
+    architecture = check_project(file).architecture
+    waterfall = fall(make_lookup(architecture, timing_lookup=analyse_with_chains(architecture)))
+    pieces = [piece for step in waterfall.steps for piece in step.pieces]
+    assert sum(piece.kind == "unknown" for piece in pieces) >= 2
+    for one, other in pairwise(pieces):
+        assert other.start == pytest.approx(one.end), "nothing overlaps, nothing is left between"
+    assert pieces[-1].end == pytest.approx(1.0)
+    first = next(piece for piece in pieces if piece.kind == "unknown")
+    *known, (place, words) = waterfall.ticks
+    assert words == "+ ?"
+    assert first.start < place < first.end
+    assert all(place <= first.start for place, _ in known)
+    assert waterfall.limits[1] is None, "a deadline behind what is unknown has no place"

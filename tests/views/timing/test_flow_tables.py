@@ -49,8 +49,8 @@ def test_a_row_says_who_gives_it_how_old_it_is_and_what_rests_on_it(tmp_path: Pa
     assert given == []
     cells = [[_read(cell) if isinstance(cell, tuple) else cell for cell in row] for row in taken]
     assert cells == [
-        ["picture", "Camera / Partner P · by Cable", "/see/camera/picture / sensor_msgs/msg/Image", "50 Hz", "22 ms", "6 ms", "6 ms", "107 ms", "sampled; 80 % never read", "Sees and stops 400 ms"],
-        ["pose", "Odometry / same host", "/act/odometry/pose / geometry_msgs/msg/Pose", "100 Hz", "16 ms", "6 ms", "6 ms", "107 ms", "sampled; 90 % never read; up to 12 may wait, the queue holds 10", ""],
+        ["picture", "Camera / Partner P · by Cable", "/see/camera/picture / sensor_msgs/msg/Image", "50 Hz", "22 ms", "6 ms", "6 ms", "107 ms", "sampled; 80 % never read", "Sees and stops 400 ms", "Image"],
+        ["pose", "Odometry / same host", "/act/odometry/pose / geometry_msgs/msg/Pose 60 B", "100 Hz", "16 ms", "6 ms", "6 ms", "107 ms", "sampled; 90 % never read; up to 12 may wait, the queue holds 10", "", "Pose"],
     ]  # fmt: skip
 
 

@@ -9,7 +9,7 @@ from archgen.plugins.ros.launch.launch_actions import ConditionalValue, LaunchAc
 from archgen.plugins.ros.launch.launch_entities import EntityReader, LaunchEntity
 from archgen.plugins.ros.launch.launch_parameter_values import FILE_KIND, read_inline_value, read_inline_values
 from archgen.plugins.ros.launch.launch_values import LaunchValue, Substitution, UnknownValue, describe_launch_value
-from archgen.plugins.ros.launch.substitution_texts import read_substituted_text
+from archgen.plugins.ros.launch.substitution_texts import fill_in_values, read_substituted_text
 
 _WORKING_FOLDERS = frozenset({"node", "ROS_HOME"})
 
@@ -145,30 +145,20 @@ class Ros1EntityReader(EntityReader):
         if entity.attributes.get("command", "load") != "load":
             return []
         prefix = [part for key in ("ns", "param") if (part := str(entity.attributes.get(key, "")).strip("/~"))]
+        is_filled_in = entity.attributes.get("subst_value") in {"true", "1", "True"}
         if "file" in entity.attributes:
-            return [Substitution(FILE_KIND, (self._attribute(entity, "file"), "/".join(prefix), None))]
+            return [Substitution(FILE_KIND, (self._attribute(entity, "file"), "/".join(prefix), is_filled_in or None))]
         values: Any = read_inline_values(textwrap.dedent(entity.text.strip("\n")), entity.span)
         if values is None:
             text = entity.text.strip()
             values = read_inline_value(text) if prefix and text else None
         if values is None:
             return []
-        if entity.attributes.get("subst_value") in {"true", "1", "True"}:
-            values = self._fill_values(values)
+        if is_filled_in:
+            values = fill_in_values(values, self._folder)
         for part in reversed(prefix):
             values = {part: values}
         return [values] if isinstance(values, dict) else []
-
-    def _fill_values(self, values: Any, depth: int = 0) -> Any:  # noqa: ANN401 - data of any form
-        if depth > 20:  # noqa: PLR2004 - parameters nest a few times
-            return UnknownValue("values nested very deep")
-        if isinstance(values, dict):
-            return {key: self._fill_values(value, depth + 1) for key, value in values.items()}
-        if isinstance(values, list):
-            return [self._fill_values(value, depth + 1) for value in values]
-        if isinstance(values, str) and "$(" in values:
-            return Substitution("typed", (read_substituted_text(values, self._folder, is_ros_1=True), "yaml"))
-        return values
 
     def _clean_name(self, name: str) -> LaunchValue:
         return read_substituted_text(name.removeprefix("~"), self._folder, is_ros_1=True)

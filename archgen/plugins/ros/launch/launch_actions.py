@@ -9,6 +9,7 @@ from dataclasses import dataclass, field
 from typing import Any
 
 from archgen.plugin.importing import Span
+from archgen.plugin.model import NO_SCHEDULING, ProcessScheduling
 from archgen.plugins.ros.launch.launch_values import LaunchValue
 
 ActionKind = str
@@ -75,6 +76,8 @@ class LaunchedNode:
     unclear_remaps: set[str] = field(default_factory=set)
     """What a program says and a computed remap gives another name; `*` where that is computed, too."""
     parameters: dict[str, LaunchValue] = field(default_factory=dict)
+    unclear_parameters: dict[str, str] = field(default_factory=dict)
+    """Why the value of a parameter is not known, by its name; by `*` why those are not that nothing else gives: a file is not read."""
     file_parameters: set[str] = field(default_factory=set)
     """The names of the parameters that a file gives, and nothing behind it."""
     parameter_files: list[str] = field(default_factory=list)
@@ -85,6 +88,7 @@ class LaunchedNode:
     environment: dict[str, str] = field(default_factory=dict)
     directory: str = ""
     user: str = ""
+    scheduling: ProcessScheduling = NO_SCHEDULING
     container: LaunchedNode | None = None
     container_name: str = ""
     """The full name of the container that loads it, where another action starts that."""

@@ -12,6 +12,7 @@ import posixpath
 from collections.abc import Callable, Mapping, Sequence
 from copy import copy
 from dataclasses import dataclass, field
+from typing import Any
 
 from archgen.plugin.importing import WorkBudget
 from archgen.plugins.ros.launch.launch_actions import LaunchCondition
@@ -27,21 +28,25 @@ from archgen.plugins.ros.launch.launch_values import (
     name_object,
     write_plain,
 )
-from archgen.plugins.ros.launch.python_operators import calculate_number, compare_values
+from archgen.plugins.ros.launch.python_operators import calculate_number, compare_values, is_open
 from archgen.plugins.ros.launch.python_parsing import parse_expression
 
-PlainResult = bool | str | int | float | None
+PlainResult = bool | str | int | float | list[Any] | None
 ArgumentLookup = Callable[[str], str | None]
 _MAX_DIGITS = 30
+_TEXT_METHODS = frozenset({"lower", "upper", "strip", "lstrip", "rstrip", "title", "startswith", "endswith"})
 
 
 def evaluate_expression(text: str, look_up: ArgumentLookup) -> PlainResult:
-    """Return the value of an expression; None where only running it would tell. `look_up` knows arguments by name."""
-    expression = None if OPEN in text else parse_expression(text)
+    """Return the value of an expression; None where only running it would tell. `look_up` knows arguments by name.
+
+    A text that is filled in at the launch may be what comes of it; nothing is concluded from it.
+    """
+    expression = parse_expression(text)
     return None if expression is None else _evaluate_node(expression, look_up, 0)
 
 
-def _evaluate_node(node: ast.expr, look_up: ArgumentLookup, depth: int) -> PlainResult:  # noqa: C901, PLR0911
+def _evaluate_node(node: ast.expr, look_up: ArgumentLookup, depth: int) -> PlainResult:  # noqa: C901, PLR0911, PLR0912
     if depth > _MAX_DEPTH:
         return None
     match node:
@@ -56,29 +61,58 @@ def _evaluate_node(node: ast.expr, look_up: ArgumentLookup, depth: int) -> Plain
             return None if known is None else _read_word(known)
         case ast.Call(func=ast.Name(id="int" | "float" | "str" as kind), args=[argument], keywords=[]):
             return _convert_value(kind, _evaluate_node(argument, look_up, depth + 1))
+        case ast.Attribute(value=ast.Name(id="math"), attr="pi" | "tau" | "e" as name):
+            constant: float = getattr(math, name)
+            return constant
         case ast.UnaryOp(op=ast.USub(), operand=operand):
             return calculate_number(ast.Sub(), 0, _evaluate_node(operand, look_up, depth + 1))
         case ast.UnaryOp(op=ast.Not(), operand=operand):
-            found = _evaluate_node(operand, look_up, depth + 1)
-            return None if found is None else not found
+            verdict = _judge_truth(_evaluate_node(operand, look_up, depth + 1))
+            return None if verdict is None else not verdict
         case ast.BoolOp(op=joint, values=values):
-            return _join_verdicts(joint, [_evaluate_node(value, look_up, depth + 1) for value in values])
+            return _join_verdicts(joint, [_judge_truth(_evaluate_node(value, look_up, depth + 1)) for value in values])
         case ast.IfExp(test=test, body=body, orelse=other):
-            verdict = _evaluate_node(test, look_up, depth + 1)
+            verdict = _judge_truth(_evaluate_node(test, look_up, depth + 1))
             return None if verdict is None else _evaluate_node(body if verdict else other, look_up, depth + 1)
         case ast.BinOp(left=left, op=sign, right=right):
             return _calculate(sign, *(_evaluate_node(side, look_up, depth + 1) for side in (left, right)))
         case ast.Compare(left=left, ops=[comparison], comparators=[right]):
             sides = [_evaluate_node(side, look_up, depth + 1) for side in (left, right)]
             return None if None in sides else compare_values(comparison, *sides)
+        case ast.Call(func=ast.Attribute(value=owner, attr=name), args=arguments, keywords=[]) if name in _TEXT_METHODS:
+            texts = [_evaluate_node(each, look_up, depth + 1) for each in (owner, *arguments)]
+            return _call_text_method(name, texts)
+        case ast.List(elts=items) | ast.Tuple(elts=items):
+            listed = [_evaluate_node(each, look_up, depth + 1) for each in items]
+            return None if None in listed else listed
+        case ast.Subscript(value=ast.Dict(keys=keys, values=items), slice=place):
+            names = [None if key is None else _evaluate_node(key, look_up, depth + 1) for key in keys]
+            wanted = _evaluate_node(place, look_up, depth + 1)
+            is_known = None not in [wanted, *names] and not is_open([wanted, *names])
+            chosen = next((each for name, each in zip(names, items, strict=True) if is_known and name == wanted), None)
+            return None if chosen is None else _evaluate_node(chosen, look_up, depth + 1)
     return None
 
 
-def _join_verdicts(joint: ast.boolop, values: list[PlainResult]) -> bool | None:
+def _judge_truth(value: PlainResult) -> bool | None:
+    return None if value is None or is_open(value) else bool(value)
+
+
+def _join_verdicts(joint: ast.boolop, verdicts: list[bool | None]) -> bool | None:
     decisive = isinstance(joint, ast.Or)
-    if any(value is not None and bool(value) == decisive for value in values):
+    if decisive in verdicts:
         return decisive
-    return None if None in values else not decisive
+    return None if None in verdicts else not decisive
+
+
+def _call_text_method(name: str, texts: Sequence[PlainResult]) -> PlainResult:
+    if not all(isinstance(text, str) and OPEN not in text for text in texts):
+        return None
+    try:
+        result: PlainResult = getattr(texts[0], name)(*texts[1:])
+    except TypeError:  # an argument too few, or too many
+        return None
+    return result
 
 
 def _calculate(sign: ast.operator, left: PlainResult, right: PlainResult) -> str | int | float | None:
@@ -88,8 +122,10 @@ def _calculate(sign: ast.operator, left: PlainResult, right: PlainResult) -> str
 
 
 def _convert_value(kind: str, value: PlainResult) -> PlainResult:
-    if value is None or kind == "str":
-        return None if value is None else str(value)
+    if value is None or isinstance(value, list):
+        return None
+    if kind == "str":
+        return str(value)
     try:
         number = float(value) if len(str(value)) < _MAX_DIGITS else None
     except ValueError:

@@ -25,6 +25,7 @@ from archgen.plugin.importing import (
     read_bounded,
     resolve_scalar,
 )
+from archgen.plugin.model import is_parameter_name, read_scheduling
 from archgen.plugin.ros import ParameterText, matches_node_name, read_parameter_text
 from archgen.plugins.ros.launch.command_words import split_words
 from archgen.plugins.ros.launch.launch_actions import LaunchCondition, LaunchedNode, join_names
@@ -91,6 +92,8 @@ def split_parameter(value: Any, name: str) -> tuple[Any, list[tuple[str, Unknown
     """Return what is plain of a parameter's value, None for nothing, and what is not, by the dotted names."""
     if not name.rpartition(".")[2].strip("/"):
         return None, [(name, UnknownValue("what has no name"))]
+    if isinstance(value, CommandWords) and not is_parameter_name(name):
+        return None, [(name, UnknownValue("what has a name that no parameter can have"))]
     if isinstance(value, UnknownValue | CommandWords):
         return None, [(name, value)]
     if not isinstance(value, dict) or not value:
@@ -173,6 +176,11 @@ class ParameterFileReader:
             if matches_node_name(section.pattern, parts)
             for value in section.values
         }
+
+    def list_addressed(self, path: Path) -> list[str]:
+        """Return the names of nodes to which a file of ROS 2 says something, as it writes them."""
+        text = self._read(path)
+        return [section.name for section in text.sections] if text is not None else []
 
     def read_whole(self, path: Path) -> dict[str, Any] | None:
         """Return all values of a file of ROS 1, nested as it has them; None where it cannot be read."""
@@ -275,6 +283,33 @@ class FileRewrites:
         return found
 
 
+class RewrittenFile(str):
+    """The name of a parameter file as an argument hands it to another launch file, with what is written over it there already."""
+
+    __slots__ = ("changes", "root_name")
+    root_name: str
+    changes: tuple[FileRewrites, ...]
+
+
+def hand_on_file(entry: Substitution, context: LaunchContext) -> str | UnknownValue:
+    """Return the name of a file among parameters, with what is written over it as it is at this place."""
+    value, namespace, changes = entry.parts
+    text = context.resolve(value)
+    if isinstance(text, UnknownValue) or not isinstance(changes, FileRewrites):
+        return text
+    root = context.resolve(namespace)
+    handed = RewrittenFile(text)
+    handed.root_name = root if isinstance(root, str) else ""
+    here = FileRewrites(
+        evaluate_parameter(changes.values, context), evaluate_parameter(changes.texts, context), changes.condition
+    )
+    handed.changes = (here,)
+    if isinstance(text, RewrittenFile):
+        handed.root_name = "/".join(filter(None, (handed.root_name, text.root_name)))
+        handed.changes = (*text.changes, here)
+    return handed
+
+
 def _replace_texts(value: Any, texts: Mapping[str, Any], *, is_sure: bool) -> Any:  # noqa: ANN401 - a value of a file
     if isinstance(value, list):
         items = [_replace_texts(item, texts, is_sure=is_sure) for item in value]
@@ -349,13 +384,19 @@ def read_nodelet(node: LaunchedNode) -> None:
 
 
 def read_prefix(node: LaunchedNode, prefix: str) -> str:
-    """Set the user and the folder that a prefix such as `sudo -u robot -- env -C /opt` says; return what is left of it."""
+    """Set what a prefix such as `sudo -u robot -- chrt -f 40 env -C /opt` says: the user, priority and cores of a node, the folder.
+
+    Return what is left of it.
+    """
     words = split_words(prefix)
     if words[:1] == ["sudo"] and "-u" in words[1:-1] and OPEN not in prefix:
         place = words.index("-u")
         node.user = words[place + 1]
         words = words[place + 2 :]
         words = words[1:] if words[:1] == ["--"] else words
+    if node.form != "container":
+        node.scheduling, left = read_scheduling(words)
+        words = [*left]
     if words[:2] == ["env", "-C"] and len(words) == 3:  # noqa: PLR2004 - `env -C FOLDER`
         node.directory, words = words[2], []
     return " ".join(words)

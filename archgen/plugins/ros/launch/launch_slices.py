@@ -6,6 +6,7 @@ from collections.abc import Mapping, Sequence
 from typing import Any
 
 from archgen.plugin.importing import make_id, make_unique_id
+from archgen.plugin.model import ProcessScheduling
 from archgen.plugin.ros import expand_name, find_name_fault, find_node_name_fault
 from archgen.plugins.ros.launch.launch_actions import LaunchedNode
 from archgen.plugins.ros.launch.launch_run import LaunchRun
@@ -139,6 +140,7 @@ class SliceMaker:
             "parameter_files": node.parameter_files,
             "parameters": nest_parameters(node.parameters),
             "parameter_commands": node.parameter_commands,
+            "timing": _write_scheduling(node.scheduling),
             "start": self._write_start(node),
             "hints": {HINT: self._write_hint(node, keeps_rest=False)},
         }
@@ -263,3 +265,9 @@ def _write_private(name: str) -> str:
 
 def _find_bare(name: str) -> str | None:
     return "it is only a `/`" if name == "/" else None
+
+
+def _write_scheduling(scheduling: ProcessScheduling) -> dict[str, Any]:
+    priority = {} if scheduling.priority is None else {"priority": scheduling.priority}
+    cores = list(scheduling.cores)
+    return {**priority, **({"core": cores[0]} if len(cores) == 1 else {"cores": cores} if cores else {})}

@@ -27,6 +27,8 @@ class UnknownValue:
     line: int = 0
     file: str = ""
     """Where the line stands, if that is another file than the one of what needs the value."""
+    is_several: bool = False
+    """Whether it stands in a list for any number of items."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -13,6 +13,7 @@ from archgen.plugins.ros.launch.launch_actions import LaunchAction, LaunchedNode
 from archgen.plugins.ros.launch.launch_parameter_values import (
     FILE_KIND,
     FileRewrites,
+    RewrittenFile,
     count_leaves,
     evaluate_parameter,
     nest_values,
@@ -30,11 +31,15 @@ from archgen.plugins.ros.launch.launch_values import (
     describe_launch_value,
 )
 from archgen.plugins.ros.launch.scope_run import ScopeRun
+from archgen.plugins.ros.launch.substitution_texts import fill_in_values
 
 _VARIABLE = re.compile(r"[A-Za-z_][A-Za-z0-9_]*\Z")
 
 CONTAINER_PACKAGE = "rclcpp_components"
 _STEPS_OF_A_NODE = 75
+_COMPUTED = "$(computed "
+"""Stands for a word that only running the file would tell, as no launch file says it."""
+_MAX_COMPUTED = 80
 _COLLECTIONS = frozenset({list, tuple, dict})
 
 
@@ -75,10 +80,10 @@ class NodeMaker:
         for value in wrap_in_list(action.get("command")):
             if value is None:
                 continue
-            text = self._run.resolve_told(action, "a word of the command", value)
-            if text is None:
+            text = self._resolve_word(action, "a word of the command", value, action.get("command"))
+            if text is None or (text.startswith(_COMPUTED) and not words):
                 return None
-            words += split_words(text) if action.get("splits_words") else [text]
+            words += split_words(text) if action.get("splits_words") and not text.startswith(_COMPUTED) else [text]
         if not words:
             self._run.add_note(action.word, "it has no command", action.span)
             return None
@@ -86,6 +91,19 @@ class NodeMaker:
         self._set_process(node, action)
         self._finish(node)
         return node
+
+    def _resolve_word(self, action: LaunchAction, what: str, value: LaunchValue, whole: LaunchValue) -> str | None:
+        """Return a word of a command line; None for what may be any number of them.
+
+        One that is computed keeps its place: without it the others mean something else.
+        """
+        text = self._run.context.resolve(value)
+        if isinstance(text, str):
+            return text
+        self._run.tell_computed(action, what, text)
+        if value is whole or text.is_several:
+            return None
+        return f"{_COMPUTED}{' '.join(text.reason.split())[:_MAX_COMPUTED]})"
 
     def _pay(self, action: LaunchAction) -> bool:
         """Pay for a node with what it takes over from what is around it, and with what its action says."""
@@ -206,15 +224,15 @@ class NodeMaker:
         for key in ("arguments", "ros_arguments"):
             given: list[str] = []
             for value in wrap_in_list(action.get(key)):
-                text = self._run.resolve_told(action, "an argument of the program", value)
+                text = self._resolve_word(action, "an argument of the program", value, action.get(key))
                 if text is None:
                     continue
                 self._keep_written(node, "arguments", value)
-                given += split_words(text) if action.get("splits_words") else [text]
+                given += split_words(text) if action.get("splits_words") and not text.startswith(_COMPUTED) else [text]
             words += ["--ros-args", *given] if key == "ros_arguments" and given else given
         node.arguments = words
         if not self._run.context.is_ros_1:
-            read_ros_arguments(node, lambda path: self._add_file(node, path, "", None))
+            read_ros_arguments(node, lambda path: self._add_file(node, path, "", ()))
         elif action.get("keeps_arguments") is not True:
             read_nodelet(node)
 
@@ -238,6 +256,7 @@ class NodeMaker:
             node.parameter_commands.pop(inner_name, None)
             if isinstance(other, UnknownValue):
                 self._run.tell_computed(action, f"the parameter `{inner_name}`", other)
+                node.unclear_parameters[inner_name] = other.reason
             elif other:
                 node.parameter_commands[inner_name] = list(other)
         if found is not None:
@@ -246,6 +265,7 @@ class NodeMaker:
             parts = [each for each in name.split("/") if each] if self._run.context.is_ros_1 else [name]
             overlay_parameters(node.parameters, nest_values(found, parts))
             node.file_parameters.discard(name)
+            node.unclear_parameters.pop(name, None)
             node.parameter_commands.pop(name, None)
 
     def _add_file_value(self, node: LaunchedNode, action: LaunchAction, entry: LaunchValue) -> None:
@@ -255,23 +275,32 @@ class NodeMaker:
         value, namespace, changes = entry.parts if is_file else (entry, "", None)
         text = self._run.resolve_told(action, "a parameter file", value)
         if text is None:
+            node.unclear_parameters["*"] = f"a parameter file that is computed, {describe_launch_value(value)}"
             return
         self._keep_written(node, "parameter_files", value)
-        self._add_file(
-            node, text, self._resolve_text(namespace), changes if isinstance(changes, FileRewrites) else None
-        )
+        root_name, all_changes = self._resolve_text(namespace), (changes,) if isinstance(changes, FileRewrites) else ()
+        if isinstance(text, RewrittenFile):
+            root_name, all_changes = "/".join(filter(None, (root_name, text.root_name))), (*text.changes, *all_changes)
+        self._add_file(node, text, root_name, all_changes, action if changes is True else None)
 
     def _resolve_text(self, value: LaunchValue) -> str:
         text = self._run.context.resolve("" if value is None else value)
         return text if isinstance(text, str) else ""
 
-    def _add_file(self, node: LaunchedNode, text: str, root_name: str, changes: FileRewrites | None) -> None:
-        """Add a parameter file: its name, and what it says to the node where it can be read."""
+    def _add_file(
+        self,
+        node: LaunchedNode,
+        text: str,
+        root_name: str,
+        changes: Sequence[FileRewrites],
+        action: LaunchAction | None = None,
+    ) -> None:
+        """Add a parameter file: its name, and what it says to the node where it can be read; an action fills its values in."""
         if not text:
             return
         path = self._run.files.find_file(text)
         if self._run.context.is_ros_1:
-            self._add_ros_1_file(node, text, path, root_name)
+            self._add_ros_1_file(node, text, path, root_name, action)
             return
         # A file below a namespace is for the nodes of that namespace.
         full_name = node.full_name or (node.program_name and join_names(node.namespace, node.program_name))
@@ -284,26 +313,54 @@ class NodeMaker:
         if values is None:
             words = "it is not read" if path is None else "it is no file of parameters of ROS 2"
             self._run.add_note(FILE_KIND, f"`{text}`: {words}", node.span, fate="noted")
+            node.unclear_parameters["*"] = f"the parameter file {text}"
             return
         if not self._run.pay(STEPS_OF_A_KEPT_VALUE * len(values), FILE_KIND, node.span):
             return
-        for name, value in (changes.change_values(values, self._run.context) if changes else values).items():
+        self._tell_unaddressed(node, path, full_name, values)
+        for each in changes:
+            values = each.change_values(values, self._run.context)
+        for name, value in values.items():
             if isinstance(value, UnknownValue):
                 node.parameters.pop(name, None)
                 self._run.tell_computed(node, f"the parameter `{name}`", value)
+                node.unclear_parameters[name] = value.reason
             else:
+                node.unclear_parameters.pop(name, None)
                 node.parameters[name] = value
                 node.file_parameters.add(name)
 
-    def _add_ros_1_file(self, node: LaunchedNode, text: str, path: Path | None, inner_name: str) -> None:
+    def _tell_unaddressed(
+        self, node: LaunchedNode, path: Path | None, full_name: str, values: Mapping[str, Any]
+    ) -> None:
+        """Note that a file is for other nodes: a name that is misspelt there, of which ROS says nothing either."""
+        if values or path is None or node.form == "container":
+            return
+        addressed = [f"`{each}`" for each in self._run.parameter_reader.list_addressed(path)]
+        if not addressed:
+            return
+        known = f"`{full_name}`" if full_name else f"{node.executable}, whose own name the launch file does not say"
+        more = " and others" if addressed[3:] else ""
+        words = f"`{self._run.files.show_path(path)}` says nothing to {known}, but to {', '.join(addressed[:3])}{more}"
+        self._run.add_note(FILE_KIND, words, node.span, fate="noted")
+
+    def _add_ros_1_file(
+        self, node: LaunchedNode, text: str, path: Path | None, inner_name: str, action: LaunchAction | None
+    ) -> None:
         """Add a file that ROS 1 loads below a node's name, or deeper."""
         values = None if path is None else self._run.parameter_reader.read_whole(path)
         if values is None:
             self._run.add_note(FILE_KIND, f"`{text}`: it is not read", node.span, fate="noted")
+            node.unclear_parameters["*"] = f"the parameter file {text}"
             if not inner_name and text not in node.parameter_files:
                 node.parameter_files.append(text)
             return
-        if self._run.pay(STEPS_OF_A_KEPT_VALUE * count_leaves(values), FILE_KIND, node.span):
+        if not self._run.pay(STEPS_OF_A_KEPT_VALUE * count_leaves(values), FILE_KIND, node.span):
+            return
+        if action is not None:
+            for name, value in fill_in_values(values, "").items():
+                self._set_parameter(node, action, "/".join(filter(None, [inner_name, name])), value)
+        else:
             overlay_parameters(node.parameters, nest_values(values, inner_name.split("/") if inner_name else []))
 
 

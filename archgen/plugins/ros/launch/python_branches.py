@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
+from archgen.plugin import replace
 from archgen.plugins.ros.launch.launch_actions import LaunchAction
 from archgen.plugins.ros.launch.launch_values import LaunchValue, Substitution, UnknownValue, is_plain
 from archgen.plugins.ros.launch.python_values import NameScope
@@ -91,7 +92,7 @@ def _merge_lists(first: list[LaunchValue], second: list[LaunchValue], test: Unkn
             kept.append(item)
             seen.add(id(item))
     if not all(map(_holds_actions, rest)):
-        kept.append(_make_unknown(test))
+        kept.append(replace(_make_unknown(test), is_several=True))
     return kept
 
 

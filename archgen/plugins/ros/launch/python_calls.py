@@ -44,8 +44,6 @@ _FIRST_ARGUMENT = {
     "PathSubstitution": "path",
     "TextSubstitution": "text",
     "ParameterFile": "param_file",
-    "Path": "path",
-    "PurePath": "path",
     "abspath": "path",
     "realpath": "path",
     "expanduser": "path",
@@ -83,6 +81,8 @@ class CallReader(OpenedFileReader):
             "PathJoinSubstitution": self._call_path_join,
             "join": self._call_join,
             "joinpath": self._call_join,
+            "Path": self._call_join,
+            "PurePath": self._call_join,
             "dirname": self._call_dirname,
             "ThisLaunchFileDir": lambda *_: posixpath.dirname(self.own_name),
             "ThisLaunchFile": lambda *_: self.own_name,
@@ -160,6 +160,8 @@ class CallReader(OpenedFileReader):
         parts = arguments.positional
         if any(isinstance(part, UnknownValue) for part in parts) or not parts:
             return self.quote(node)
+        if len(parts) == 1:
+            return parts[0]
         if all(isinstance(part, str) for part in parts):
             return posixpath.join(*parts) if sum(map(len, parts)) <= MAX_TEXT else self.quote(node)
         return Substitution("path", tuple(parts))
@@ -198,7 +200,8 @@ class CallReader(OpenedFileReader):
         return Substitution(FILE_KIND, (arguments.get(0, "source_file"), "", made))
 
     def _call_getenv(self, arguments: CallArguments, _node: ast.Call) -> LaunchValue:
-        return self.find_variable(*arguments.positional[:2])
+        default = arguments.get(1, "default")
+        return self.find_variable(arguments.get(0, "key"), *([] if default is None else [default]))
 
     def _call_range(self, arguments: CallArguments, node: ast.Call) -> LaunchValue:
         ends = [self.force(each) for each in arguments.positional]

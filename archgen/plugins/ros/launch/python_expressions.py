@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import ast
+import math
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Mapping
 from pathlib import Path
@@ -12,7 +13,7 @@ from archgen.plugin.importing import CHARACTERS_IN_A_STEP, Span
 from archgen.plugins.ros.launch.launch_actions import LaunchAction
 from archgen.plugins.ros.launch.launch_context import LaunchContext
 from archgen.plugins.ros.launch.launch_values import LaunchValue, Substitution, UnknownValue, copy_value, join_values
-from archgen.plugins.ros.launch.python_operators import combine_values, compare_values
+from archgen.plugins.ros.launch.python_operators import combine_values, compare_values, is_open
 from archgen.plugins.ros.launch.python_values import (
     BoundMethod,
     CallArguments,
@@ -37,7 +38,14 @@ _FINDERS = frozenset(
 )
 """Expressions that make nothing, or whose parts are paid for each by itself."""
 _WORD = "launch file"
-_KNOWN_TEXTS = {"os.sep": "/", "os.path.sep": "/", "os.pathsep": ":"}
+_KNOWN_VALUES = {
+    "os.sep": "/",
+    "os.path.sep": "/",
+    "os.pathsep": ":",
+    "math.pi": math.pi,
+    "math.tau": math.tau,
+    "math.e": math.e,
+}
 
 
 class ExpressionReader(ABC):
@@ -173,7 +181,7 @@ class ExpressionReader(ABC):
         owner = self.evaluate(node.value, scope)
         if isinstance(owner, ImportedName):
             name = f"{owner.name}.{node.attr}"
-            return _KNOWN_TEXTS.get(name) or ImportedName(name)
+            return _KNOWN_VALUES.get(name) or ImportedName(name)
         if isinstance(owner, ModuleValue):
             is_known, value = owner.scope.find(node.attr)
             return value if is_known else ImportedName(f"{owner.name}.{node.attr}")
@@ -239,6 +247,8 @@ class ExpressionReader(ABC):
                 self.evaluate(part.value, scope) if isinstance(part, ast.FormattedValue) else self.evaluate(part, scope)
             )
             is_formatted = isinstance(part, ast.FormattedValue) and part.format_spec is not None
+            if isinstance(value, list | dict) and not is_open([*value, *getattr(value, "values", list)()]):
+                value = str(value)
             if is_formatted or not isinstance(value, str | int | float | bool | Substitution):
                 return self.quote(node)
             # In a text Python writes `True`, not `true`.

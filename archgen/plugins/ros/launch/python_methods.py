@@ -24,7 +24,7 @@ _TEXT_METHODS = frozenset(
 )
 _MAX_GROWTH = 100
 _SAME_METHODS = frozenset(
-    {"perform", "as_posix", "resolve", "absolute", "toxml", "toprettyxml", "expanduser", "copy", "string"}
+    {"perform", "as_posix", "resolve", "absolute", "toxml", "toprettyxml", "expanduser", "copy", "string", "__str__"}
 )
 
 

@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import ast
+import re
 import warnings
+from collections.abc import Iterator
 from typing import Literal
 
 from archgen.plugin.importing import ForeignFileError, Span
@@ -12,6 +14,10 @@ MAX_CHARACTERS = 1_000_000
 """Launch files have a few thousand characters, the longest of known robots sixty thousand."""
 _MAX_OPEN = 150
 """Brackets that are open at once: Python's own parser gives up at 200."""
+_MAX_STRINGS_IN_STRINGS = 20
+_WIDE_QUOTES = ('"""', "'''")
+_BEGINNING = re.compile(r"#[^\n]*+|(?P<prefix>(?<![A-Za-z])[A-Za-z]{0,2})(?P<quote>\"\"\"|'''|\"|')")
+"""Where a comment stands, or a string begins."""
 
 
 class PythonRefusedError(Exception):
@@ -27,9 +33,56 @@ def parse_python(text: str) -> ast.Module:
     if len(text) > MAX_CHARACTERS:
         msg = f"it has more than {MAX_CHARACTERS:,} characters, which no launch file has"
         raise PythonRefusedError(msg)
-    tree = _parse_quietly(text, "exec")
+    try:
+        tree = _parse_quietly(text, "exec")
+    except PythonRefusedError as refusal:
+        # Python 3.12 takes lines and quotes in braces of strings that an older one does not.
+        try:
+            tree = _parse_quietly("".join(_widen_format_strings(text)), "exec")
+        except PythonRefusedError:
+            raise refusal from None
     assert isinstance(tree, ast.Module)  # noqa: S101 - what this mode gives
     return tree
+
+
+def _widen_format_strings(text: str) -> Iterator[str]:
+    """Yield a text in pieces, with three quotes around strings `f"..."` that have lines or their own quotes in braces."""
+    done = 0
+    while (begin := _BEGINNING.search(text, done)) is not None:
+        body, end = begin.end(), begin.end()
+        if quote := begin["quote"]:
+            is_format = "f" in begin["prefix"].lower()
+            end = _find_string_end(text, body, quote, 0, is_format=is_format)
+            inner = text[body : end - len(quote)]
+            wide = next((each for each in _WIDE_QUOTES if each not in inner and not inner.endswith(each[0])), "")
+            if is_format and wide and len(quote) == 1 and ("\n" in inner or quote in inner):
+                yield f"{text[done : body - 1]}{wide}{inner}{wide}"
+                done = end
+        yield text[done:end]
+        done = end
+    yield text[done:]
+
+
+def _find_string_end(text: str, place: int, quote: str, depth: int, *, is_format: bool) -> int:
+    """Return where the string ends whose text begins at a place; the end of all text where it does not end."""
+    open_brackets = 0
+    while place < len(text):
+        character = text[place]
+        if open_brackets and character in "'\"" and depth < _MAX_STRINGS_IN_STRINGS:
+            inner = text[place : place + 3] if text[place : place + 3] in _WIDE_QUOTES else character
+            is_inner_format = text[place - 1] in "fF" or text[place - 2 : place].lower() == "fr"
+            place = _find_string_end(text, place + len(inner), inner, depth + 1, is_format=is_inner_format)
+            continue
+        if not open_brackets and text.startswith(quote, place):
+            return place + len(quote)
+        if text.startswith(("{{", "}}"), place) and not open_brackets:
+            place += 1
+        elif is_format and character in "{[(" and (open_brackets or character == "{"):
+            open_brackets += 1
+        elif open_brackets and character in "}])":
+            open_brackets -= 1
+        place += 2 if character == "\\" else 1
+    return len(text)
 
 
 def parse_expression(text: str) -> ast.expr | None:

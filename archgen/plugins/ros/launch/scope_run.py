@@ -17,7 +17,7 @@ from archgen.plugins.ros.launch.launch_actions import (
 from archgen.plugins.ros.launch.launch_arguments import DeclaredArgument, LaunchArguments
 from archgen.plugins.ros.launch.launch_context import LaunchContext
 from archgen.plugins.ros.launch.launch_files import MAX_LAUNCH_BYTES, LaunchFiles
-from archgen.plugins.ros.launch.launch_parameter_values import FILE_KIND, ParameterFileReader
+from archgen.plugins.ros.launch.launch_parameter_values import FILE_KIND, ParameterFileReader, hand_on_file
 from archgen.plugins.ros.launch.launch_values import (
     OPEN,
     LaunchValue,
@@ -159,7 +159,9 @@ class ScopeRun:
         resolved = []
         for pair in items:
             if isinstance(pair, list | tuple) and len(pair) == 2:  # noqa: PLR2004 - a name and a value
-                name, value = self.context.resolve(pair[0]), self.context.resolve(pair[1])
+                name, value = self.context.resolve(pair[0]), pair[1]
+                is_file = isinstance(value, Substitution) and value.kind == FILE_KIND
+                value = hand_on_file(value, self.context) if is_file else self.context.resolve(value)
                 if isinstance(name, str):
                     resolved.append((name, value))
         return resolved

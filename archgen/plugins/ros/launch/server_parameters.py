@@ -40,7 +40,7 @@ def give_server_parameters(
     for_all: dict[str, Any] = {}
     given: dict[str, dict[str, Any]] = {}
     for full_name, value, span, conditions in server_parameters:
-        parts = full_name.strip("/").split("/", _MAX_DEPTH)
+        parts = [each for each in full_name.strip("/").split("/", _MAX_DEPTH) if each]
         owner = next(
             (names[name] for end in range(len(parts), 0, -1) if (name := "/" + "/".join(parts[:end])) in names), None
         )

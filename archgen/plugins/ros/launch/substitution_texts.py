@@ -52,6 +52,19 @@ def read_substituted_text(text: str, folder: str, *, is_ros_1: bool, depth: int 
     return join_values(parts)
 
 
+def fill_in_values(values: LaunchValue, folder: str, depth: int = 0) -> LaunchValue:
+    """Return values of ROS 1 in YAML, nested as they are, with their substitutions."""
+    if depth > _MAX_DEPTH:
+        return UnknownValue("values nested very deep")
+    if isinstance(values, dict):
+        return {key: fill_in_values(value, folder, depth + 1) for key, value in values.items()}
+    if isinstance(values, list):
+        return [fill_in_values(value, folder, depth + 1) for value in values]
+    if isinstance(values, str) and "$(" in values:
+        return Substitution("typed", (read_substituted_text(values, folder, is_ros_1=True), "yaml"))
+    return values
+
+
 def _take_escapes(text: str) -> str:
     """Return a text of ROS 2 without the backslashes that keep a character as it is."""
     return _ESCAPE.sub(r"\1", text) if "\\" in text else text

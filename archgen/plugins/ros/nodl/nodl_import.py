@@ -26,7 +26,7 @@ from archgen.plugin.importing import (
     parse_yaml,
     read_bounded,
 )
-from archgen.plugin.model import MAX_DIGITS
+from archgen.plugin.model import MAX_DIGITS, is_parameter_name
 from archgen.plugins.ros.ros_package.declared_parameters import read_declared_parameters
 from archgen.plugins.ros.ros_package.import_account import ImportAccount
 
@@ -94,7 +94,6 @@ _TYPES = {
     "str": "string",
     "string": "string",
 }
-_MAX_PARAMETER_NAME = 200
 
 
 def read_interface(root: XmlElement, file: str, account: ImportAccount) -> Iterator[tuple[str, NodeType]]:
@@ -127,11 +126,7 @@ def _read_child(node: NodeType, child: XmlElement, file: str, account: ImportAcc
             node.add_port(NodlPort(use, child.tag, name, type_name, child.span(file)))
     elif child.tag == "parameter":
         known = _TYPES.get(type_name.removesuffix("[]").removesuffix("_array"))
-        if (
-            not name
-            or len(name) > _MAX_PARAMETER_NAME
-            or any(not part or part.split() != [part] for part in name.split("."))
-        ):
+        if not is_parameter_name(name):
             account.add_note("parameter", f"`{name}` is no name of a parameter", child.span(file))
         elif known is None:
             account.add_note("parameter", f"`{type_name}` is no type of a parameter", child.span(file))
@@ -238,6 +233,7 @@ def _find_span(node: YamlNode | None, span: Span) -> Span:
 
 
 _TYPE = re.compile(r"([a-zA-Z][a-zA-Z0-9_]*)/(?:(msg|srv|action)/)?([A-Z][A-Za-z0-9_]*)\Z")
+_MAX_TYPE_LENGTH = 200
 _NAME = re.compile(r"[A-Za-z]\Z|[/~A-Za-z][A-Za-z0-9_/]*[A-Za-z0-9_]\Z")
 
 
@@ -300,4 +296,5 @@ def _read_type(text: str, kind: str) -> str | None:
     match = _TYPE.match(text)
     if match is None or (match[2] or kind) != kind:
         return None
-    return f"{match[1]}/{kind}/{match[3]}"
+    name = f"{match[1]}/{kind}/{match[3]}"
+    return name if len(name) <= _MAX_TYPE_LENGTH else None

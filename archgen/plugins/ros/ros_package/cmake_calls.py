@@ -17,6 +17,7 @@ _FILES_COMPARED_IN_A_STEP = 2
 _COMMENT = re.compile(r"#[^\n]*")
 _CALL = re.compile(r"\b([A-Za-z_]\w*)\s*\(([^()]{0,20000})\)")
 _WORD = re.compile(r'"([^"]*)"|([^\s"]+)')
+_DEFINITIONS = frozenset({"macro", "function"})
 _USE = re.compile(r"\$\{(\w+)\}")
 CMAKE_FILE = "CMakeLists.txt"
 _Call = tuple[str, str, Span]
@@ -32,11 +33,17 @@ class CmakeCall:
     line: int
     folder: Path
 
+    @property
+    def output_name(self) -> str:
+        """What the call names the program of its target, the first of its words; empty where it does not."""
+        is_naming = self.name == "set_target_properties" and "OUTPUT_NAME" in self.words[1:-1]
+        return self.words[self.words.index("OUTPUT_NAME", 1) + 1] if is_naming else ""
+
 
 def read_cmake_calls(
     path: Path, package: str, files: Mapping[Path, str], account: ImportAccount
 ) -> Iterator[CmakeCall]:
-    """Yield the calls of a file, and of those in folders that it adds.
+    """Yield the calls of a file, of those in folders that it adds, and of those of the package that it includes.
 
     `files` are those of the package, for globs, with their names in messages. The account's budget pays for each call, and
     for what is filled in.
@@ -53,9 +60,11 @@ class _CmakeReader:
         self._variables: dict[str, list[str]] = {"PROJECT_NAME": [package], "CMAKE_SOURCE_DIR": [root.as_posix()]}
         self._variables["PROJECT_SOURCE_DIR"] = [root.as_posix()]
         self._conditions = 0
+        self._macros: dict[str, tuple[list[str], list[_Call]]] = {}
+        """What the files define as macros and functions: the names of their parameters, and the calls in them."""
 
-    def read_file(self, path: Path, depth: int) -> Iterator[CmakeCall]:
-        """Yield the calls of a file."""
+    def read_file(self, path: Path, depth: int, folder: Path | None = None) -> Iterator[CmakeCall]:
+        """Yield the calls of a file; `folder` is that of the file that includes it."""
         try:
             text = read_bounded(path, _MAX_BYTES).decode("utf-8", "replace")
         except ForeignFileError:
@@ -68,12 +77,12 @@ class _CmakeReader:
             line += plain_text.count("\n", counted, match.start())
             counted = match.start()
             calls.append((match[1].lower(), match[2], Span(self._files.get(path, path.name), line, 1, line, 2)))
-        self._variables["CMAKE_CURRENT_SOURCE_DIR"] = self._variables["CMAKE_CURRENT_LIST_DIR"] = [
-            path.parent.as_posix()
-        ]
-        yield from self._read_calls(calls, path.parent, depth)
+        folder = folder or path.parent
+        self._variables["CMAKE_CURRENT_SOURCE_DIR"] = [folder.as_posix()]
+        self._variables["CMAKE_CURRENT_LIST_DIR"] = [path.parent.as_posix()]
+        yield from self._read_calls(calls, folder, depth)
 
-    def _read_calls(  # noqa: C901, PLR0912 - a command each
+    def _read_calls(  # noqa: C901, PLR0912, PLR0915 - a command each
         self, calls: list[_Call], folder: Path, depth: int
     ) -> Iterator[CmakeCall]:
         place = 0
@@ -96,6 +105,14 @@ class _CmakeReader:
                     self._variables[variable] = [item]
                     yield from self._read_calls(calls[place:end], folder, depth + 1)
                 place = end + 1
+                continue
+            if name in _DEFINITIONS and words:
+                end = _find_end(calls, place, name)
+                self._macros[words[0].lower()] = (words[1:], calls[place:end])
+                place = end + 1
+                continue
+            if name in self._macros and depth < _MAX_DEPTH:
+                yield from self._read_macro(name, words, folder, depth, span)
                 continue
             self._conditions += {"if": 1, "endif": -1}.get(name, 0)
             if name == "set" and words:
@@ -126,8 +143,27 @@ class _CmakeReader:
                 if inner in self._files:
                     yield from self.read_file(inner, depth + 1)
                     self._variables["CMAKE_CURRENT_SOURCE_DIR"] = [folder.as_posix()]
+            elif name == "include" and words and depth < _MAX_DEPTH and folder / words[0] in self._files:
+                own_folder = self._variables["CMAKE_CURRENT_LIST_DIR"]
+                yield from self.read_file(folder / words[0], depth + 1, folder)
+                self._variables["CMAKE_CURRENT_LIST_DIR"] = own_folder
             else:
                 yield CmakeCall(name, tuple(words), span.line, folder)
+
+    def _read_macro(self, name: str, words: list[str], folder: Path, depth: int, span: Span) -> Iterator[CmakeCall]:
+        """Yield the calls of a macro or function that is called; what it sets stays set, as in a macro."""
+        parameters, body = self._macros[name]
+        if not self._account.pay_to_repeat(1 + len(body), name, span):
+            return
+        given = {parameter: [word] for parameter, word in zip(parameters, words, strict=False)}
+        given |= {f"ARGV{place}": [word] for place, word in enumerate(words)}
+        given |= {"ARGV": words, "ARGN": words[len(parameters) :]}
+        before = dict(self._variables)
+        self._variables |= given
+        yield from self._read_calls(body, folder, depth + 1)
+        for parameter in given:
+            self._variables.pop(parameter, None)
+        self._variables |= {parameter: before[parameter] for parameter in given if parameter in before}
 
     def _fill(self, text: str, name: str, span: Span) -> list[str] | None:
         """Return the words of a call with the variables filled in; None for more than the budget has."""
@@ -158,10 +194,10 @@ class _CmakeReader:
         return found
 
 
-def _find_end(calls: list[_Call], place: int) -> int:
+def _find_end(calls: list[_Call], place: int, word: str = "foreach") -> int:
     depth = 1
     for number in range(place, len(calls)):
-        depth += {"foreach": 1, "endforeach": -1}.get(calls[number][0], 0)
+        depth += {word: 1, f"end{word}": -1}.get(calls[number][0], 0)
         if depth == 0:
             return number
     return len(calls)

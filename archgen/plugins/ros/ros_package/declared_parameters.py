@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Iterator
 from math import isfinite
 from typing import Any
 
 from archgen.plugin.importing import MappingNode, ScalarNode, YamlNode, node_to_data
-from archgen.plugin.model import MAX_NAME_LENGTH
+from archgen.plugin.model import is_parameter_name
 from archgen.plugins.ros.ros_package.import_account import ImportAccount
 
 _TYPES = {
@@ -19,7 +18,6 @@ _TYPES = {
 }
 _KEYS = frozenset({"type", "default_value", "description", "read_only", "validation", "additional_constraints"})
 _MAX_DEPTH = 20
-_PARAMETER_NAME = re.compile(r"[^\s.]+(?:\.[^\s.]+)*\Z")
 
 
 def is_declaration_file(root: MappingNode) -> bool:
@@ -32,11 +30,6 @@ def _find_declaration(mapping: MappingNode, depth: int) -> bool:
         return True
     inner = [entry.value for entry in mapping if isinstance(entry.value, MappingNode)]
     return depth < _MAX_DEPTH and any(_find_declaration(each, depth + 1) for each in inner)
-
-
-def is_parameter_name(name: str) -> bool:
-    """Whether the language takes a dotted name of a parameter."""
-    return _PARAMETER_NAME.match(name) is not None and len(name) <= MAX_NAME_LENGTH
 
 
 def is_parameter_value(value: object) -> bool:

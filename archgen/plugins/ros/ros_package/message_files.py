@@ -27,14 +27,17 @@ def make_type_name(message: str) -> str:
 
 
 def read_message_definition(
-    text: str, message: str, shown_path: str, *, is_ros_1: bool
+    text: str, message: str, shown_path: str, *, is_ros_1: bool, distro: str | None = None
 ) -> tuple[dict[str, Any], tuple[Diagnostic, ...]]:
-    """Return the type that a definition makes, and what is wrong in it. Lines that ROS refuses are left out."""
+    """Return the type that a definition makes, and what is wrong in it. Lines that ROS refuses are left out.
+
+    `distro` is the distribution that the workspace is for, where one is known: it may hold newer messages than that.
+    """
     definition = parse_interface_definition(text, message, shown_path, ros1=is_ros_1)
     interface = definition.interface
     data: dict[str, Any] = {"message": message}
-    if message in load_shipped_interfaces(None).names:
-        # archgen knows what is in it, for each distribution: written once more it would be another one.
+    if message in load_shipped_interfaces(distro).names:
+        # archgen knows what is in it: written once more it would be another one.
         return data, definition.diagnostics
     if interface.comment.strip():
         data["comment"] = interface.comment.strip()

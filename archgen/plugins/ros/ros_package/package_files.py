@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import re
 from collections.abc import Iterator
 from pathlib import Path
 
@@ -12,6 +13,7 @@ from archgen.plugin.importing import ForeignFileError, Span, XmlElement, parse_x
 MANIFEST = "package.xml"
 _MAX_MANIFEST = 1_000_000
 _MAX_PARTS = 100_000
+_WEBSITE = re.compile(r"https?://[^\s<>\"]{1,1990}\Z")
 _SKIPPED = frozenset({"build", "install", "log", "node_modules", "test", "tests"})
 
 
@@ -104,6 +106,4 @@ def _read_child_text(root: XmlElement, tag: str) -> str:
 
 
 def _is_website(url: XmlElement) -> bool:
-    text = url.text.strip()
-    kind = url.attributes.get("type", "website")
-    return kind == "website" and text.startswith(("http://", "https://")) and not any(map(str.isspace, text))
+    return url.attributes.get("type", "website") == "website" and _WEBSITE.match(url.text.strip()) is not None

@@ -16,10 +16,10 @@ from archgen.plugin.importing import (
     parse_yaml,
     read_bounded,
 )
+from archgen.plugin.model import is_parameter_name
 from archgen.plugin.ros import INVALID_INTERFACE, ParameterSection, read_parameter_text
 from archgen.plugins.ros.ros_package.declared_parameters import (
     is_declaration_file,
-    is_parameter_name,
     is_parameter_value,
     read_declared_parameters,
 )

@@ -82,8 +82,12 @@ def _read_cmake(
     file: PackageFile, package: str, files: Sequence[PackageFile], account: ImportAccount
 ) -> Iterator[tuple[str, dict[str, Any]]]:
     """Yield the programs that a CMakeLists.txt makes."""
-    for call in read_cmake_calls(file.path, package, {each.path: each.shown for each in files}, account):
+    calls = [*read_cmake_calls(file.path, package, {each.path: each.shown for each in files}, account)]
+    output_names = {call.words[0]: name for call in calls if (name := call.output_name)}
+    for call in calls:
         words = list(call.words)
+        if call.name.endswith("add_executable") and words:
+            words[0] = output_names.get(words[0], words[0])
         if call.name in {"add_executable", "ament_auto_add_executable"} and words and not _NO_NODES & set(words):
             if not _PROGRAM_NAME.match(words[0]):
                 span = Span(file.shown, call.line, 1, call.line, 2)

@@ -119,6 +119,10 @@ class RunningNode:
     is_container: bool = False
     container: str = ""
     """The full name of the container that loaded it."""
+    state: str | None = None
+    """The state of a lifecycle node."""
+    host: str | None = None
+    """What the computer calls itself on which it runs."""
 
 
 class RunningGraph:

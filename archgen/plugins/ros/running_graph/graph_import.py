@@ -5,6 +5,7 @@ A running graph as slices: component types with ports, and the nodes with what t
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Callable, Iterable, Sequence
 from pathlib import Path
 from typing import Any
@@ -76,7 +77,8 @@ class _SliceMaker:
         self._nodes: dict[str, Any] = {}
         self._containers: dict[str, Any] = {}
         self._container_ids: dict[str, str] = {}
-        self._component_types: dict[str, Any] = {}
+        self._ports: dict[str, dict[str, Any]] = {}
+        self._name_uses = Counter(each.full_name.rpartition("/")[2] for each in graph.nodes.values())
         self._loaded: dict[str, str] = {}
 
     def add_node(self, node: RunningNode, namespace: str, name: str) -> None:
@@ -85,7 +87,7 @@ class _SliceMaker:
             self._add_container(node, namespace, name)
             return
         wanted = make_id(name, "node")
-        if wanted in self._nodes and namespace.strip("/"):
+        if self._name_uses[name] > 1 and namespace.strip("/"):
             wanted = make_id(f"{namespace.strip('/').replace('/', '_')}_{name}", "node")
         node_id = make_unique_id(wanted, self._nodes.keys())
         is_lifecycle = any(
@@ -106,7 +108,7 @@ class _SliceMaker:
         }
         self._nodes[node_id] = {key: value for key, value in data.items() if value not in ("", {}, False)}
         if any(ports.values()):
-            self._component_types[node_id] = {key: ports[key] for key in ("inputs", "outputs")}
+            self._ports[node_id] = {key: ports[key] for key in ("inputs", "outputs")}
 
     def _add_container(self, node: RunningNode, namespace: str, name: str) -> None:
         container_id = make_unique_id(make_id(name, "container"), self._containers.keys())
@@ -147,10 +149,25 @@ class _SliceMaker:
                 self._nodes[node_id]["container"] = self._container_ids[container]
         sections = {"containers": self._containers, "nodes": self._nodes}
         slices = {
-            "running_types.yaml": {"component_types": self._component_types},
+            "running_types.yaml": {"component_types": self._make_component_types()},
             "running_nodes.yaml": {name: section for name, section in sections.items() if section},
         }
         return {name: parts for name, parts in slices.items() if any(parts.values())}
+
+    def _make_component_types(self) -> dict[str, Any]:
+        """Return a type for each node; one for all nodes of a name whose ports are the same, as of two equal sensors."""
+        alike: dict[str, list[str]] = {}
+        for node_id in self._ports:
+            alike.setdefault(self._nodes[node_id].get("name", node_id), []).append(node_id)
+        types: dict[str, Any] = {}
+        for name, node_ids in alike.items():
+            shared_id = make_id(name, "node")
+            ports = [self._ports[each] for each in node_ids]
+            if ports.count(ports[0]) == len(ports) > 1 and shared_id not in {*self._nodes} - {*node_ids}:
+                types[shared_id] = ports[0]
+            else:
+                types.update((each, self._ports[each]) for each in node_ids)
+        return types
 
 
 def _shorten_name(name: str, node: RunningNode, namespace: str) -> str:

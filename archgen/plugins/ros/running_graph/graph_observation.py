@@ -55,6 +55,8 @@ def observe_graph(path: Path, _options: ObservationOptions) -> ObservedRobot | N
             flatten_parameters(node.parameters) if node.parameters else None,
             # Of a node that is only listed nobody asked what it uses.
             has_known_uses=any(node.uses.values()),
+            state=node.state,
+            host=node.host,
             at=node.span,
         )
         for node in graph.nodes.values()

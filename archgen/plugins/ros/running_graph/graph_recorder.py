@@ -8,10 +8,12 @@ form of `ros2 node info` and its sisters: `archgen conform` holds it against a d
 from __future__ import annotations
 
 import json
+import socket
 import sys
 import time
 from importlib.util import find_spec
-from typing import Any, Callable, Iterator
+from pathlib import Path
+from typing import Any, Callable, Iterable, Iterator
 
 NAME = "archgen_recorder"
 QUIET_SECONDS, MOST_SECONDS, ANSWER_SECONDS = 2.0, 15.0, 5.0
@@ -40,11 +42,13 @@ def record_ros_2(write: Write) -> int:
             print("no node was found: is ROS_DOMAIN_ID that of the robot?", file=sys.stderr)
             return 1
         write_graph(node, names, write)
-        ask = ParameterQuestions(
+        ask = NodeQuestions(
             node, lambda future: rclpy.spin_until_future_complete(node, future, timeout_sec=ANSWER_SECONDS)
         )
         for full_name in dict.fromkeys(names):
             write_parameters(full_name, ask.read_values(full_name), write)
+            write_state(full_name, ask.read_state(full_name), write)
+        write_host(socket.gethostname(), names, list_commands(Path("/proc")), write)
     finally:
         node.destroy_node()
         rclpy.shutdown()
@@ -133,8 +137,8 @@ def write_end(end: Any, kind: str, write: Write) -> None:
     write(f"  Liveliness lease duration: {qos.liveliness_lease_duration.nanoseconds} nanoseconds")
 
 
-class ParameterQuestions:
-    """Asks nodes for their parameters. `wait` waits for an answer, for as long as it may take."""
+class NodeQuestions:
+    """Asks nodes for their parameters and states. `wait` waits for an answer, for as long as it may take."""
 
     def __init__(self, node: Any, wait: Callable[[Any], None]) -> None:
         """Take the node that asks."""
@@ -152,6 +156,21 @@ class ParameterQuestions:
             else None
         )
         return {name: read_value(value) for name, value in zip(names, answer.values)} if answer is not None else {}
+
+    def read_state(self, full_name: str) -> Any:
+        """Return the state of a lifecycle node; None of another one."""
+        is_managed = any(
+            (name, "lifecycle_msgs/srv/GetState" in types) == (f"{full_name}/get_state", True)
+            for title, uses in list_uses(self._node, full_name)
+            if title == "Service Servers"
+            for name, types in uses
+        )
+        if not is_managed or find_spec("lifecycle_msgs") is None:
+            return None
+        from lifecycle_msgs.srv import GetState  # type: ignore[import-not-found]
+
+        answer = self._ask(f"{full_name}/get_state", GetState, GetState.Request())
+        return answer.current_state if answer is not None else None
 
     def _ask(self, service: str, kind: Any, request: Any) -> Any:
         client = self._node.create_client(kind, service)
@@ -196,6 +215,35 @@ def write_parameters(full_name: str, values: dict[str, Any], write: Write) -> No
     write("  ros__parameters:")
     for name, value in sorted(kept.items()):
         write(f"    {json.dumps(name)}: {write_plain(value)}")
+
+
+def write_state(full_name: str, state: Any, write: Write) -> None:
+    """Write the state of a lifecycle node as `ros2 lifecycle get` does."""
+    if state is not None:
+        write(f"$ ros2 lifecycle get {full_name}")
+        write(f"{state.label} [{state.id}]")
+
+
+def list_commands(processes: Path) -> Iterator[list[str]]:
+    """Yield the words of the commands of this computer's processes."""
+    for file in sorted(processes.glob("[0-9]*/cmdline")):
+        try:
+            yield file.read_bytes().decode("utf-8", "replace").split("\0")
+        except OSError:  # ended, or somebody else's
+            continue
+
+
+def write_host(host: str, names: list[str], commands: Iterable[list[str]], write: Write) -> None:
+    """Write the nodes that run on this computer, as far as launch files gave them their names."""
+    own = set()
+    for words in commands:
+        named = {key: value for key, _, value in (word.partition(":=") for word in words) if key in {"__node", "__ns"}}
+        if "__node" in named:
+            own.add(f"{named.get('__ns', '').rstrip('/')}/{named['__node']}")
+    if own.intersection(names):
+        write(f"$ archgen host {host}")
+        for name in sorted(own.intersection(names)):
+            write(name)
 
 
 def write_plain(value: Any) -> str:

@@ -35,6 +35,8 @@ _LISTED = re.compile(r"(?: \* )?(/\S+) \[([^\]]+)\](?: \d+ (?:publishers?|subscr
 _ASKED = re.compile(r"ros2 (topic|service|action) (?:info|type)\b(?:.*\s)?(/\S+)(?:\s.*)?")
 _ANSWER = re.compile(r"(?:Type: )?(\w+/(?:msg|srv|action)/\w+)")
 _NODE_LISTS = re.compile(r"ros2 (?:node list|lifecycle nodes|component list)\b.*")
+_STATE = re.compile(r"(?:(/\S+): )?(\w+) \[\d+\]")
+_HOST = re.compile(r"archgen host (\S+)")
 _OTHER_LISTS = re.compile(r"ros2 (?:topic|service|action|param) list\b.*")
 _ACTION_ENDS = {"Action clients": "calls", "Action servers": "serves"}
 _ACTION_END = re.compile(r" +(/\S+)(?: \[([^\]]+)\])?")
@@ -82,7 +84,7 @@ class _Ros2DumpReader:
             self.end_block()
         if not text.strip():
             return
-        if self.endpoints.read_line(line):
+        if self.endpoints.read_line(line) or self._read_place(line):
             return
         if text.strip() in _SECTIONS and text.startswith(" "):
             self._open_node()
@@ -96,6 +98,20 @@ class _Ros2DumpReader:
             self._parameter_lines = [line]
         else:
             self._read_detail(line)
+
+    def _read_place(self, line: DumpLine) -> bool:
+        """Take the state of a lifecycle node, or the computer of a node; return whether the line says one of them."""
+        state = _STATE.fullmatch(line.text) if line.command.startswith("ros2 lifecycle get") else None
+        host = _HOST.fullmatch(line.command)
+        if state is not None:
+            node = self._graph.nodes.get(state[1] or line.command.split()[-1])
+            if node is not None:
+                node.state = state[2]
+        elif host is not None:
+            node = self._graph.nodes.get(line.text)
+            if node is not None:
+                node.host = host[1]
+        return state is not None or host is not None
 
     def _take_name(self, line: DumpLine) -> None:
         self._node, self._use, self._name = None, "", None

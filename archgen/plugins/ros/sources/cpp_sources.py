@@ -375,6 +375,8 @@ class _Reader:
             made = self._make(node, "call", None, (self._make(node, "name", "new"), *values))
             made.type_arguments = (clean_type(_text(type_node)),)
             return made
+        if kind == "initializer_pair" and (value := node.child_by_field_name("value")) is not None:
+            return self._read(value, depth)
         if kind == "initializer_list":
             return self._make(node, "list", None, [self._read(each, depth) for each in node.named_children])
         if kind == "lambda_expression":

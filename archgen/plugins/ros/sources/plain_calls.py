@@ -152,6 +152,7 @@ _METHODS: Mapping[tuple[type | None, str], Callable[..., Value]] = MappingProxyT
 _FUNCTIONS: Mapping[str, Callable[..., Value]] = MappingProxyType(
     {
         "setattr": _set_attribute,
+        "format": lambda text, *values: fill_text(settle(text), "{}", values),
         "enumerate": lambda items: [[place, item] for place, item in enumerate(settle(items))],
         "zip": lambda *lists: [list(each) for each in zip(*map(settle, lists), strict=False)],
         "range": _count_up,

@@ -6,8 +6,11 @@ Of a condition that is not known both ways are walked. What cannot be told is un
 
 from __future__ import annotations
 
+import builtins
+import sys
 from collections import Counter
 from collections.abc import Callable, Iterator, Mapping, Sequence
+from pathlib import Path
 from typing import Any
 
 from archgen.plugin.importing import Span, WorkBudget
@@ -39,21 +42,47 @@ _MAX_FAMILY = 50
 _MAX_BARREN_CALLS = 8
 _MAX_ALIASES = 8
 _MAX_LISTS = 20
+_LOOPS = frozenset({"for", "for all", "pairs"})
+"""What comprehensions of Python are read as."""
 _MISSING = object()
 _PASSED_THROUGH = frozenset(
     {"lock", "get", "shared_from_this", "get_parameter_value", "c_str", "move", "ref", "forward", "value", "get_value"}
     | {"static_pointer_cast", "dynamic_pointer_cast", "as_string", "as_int", "as_double", "as_bool", "as_string_array"}
     | {f"{kind}_value" for kind in ("string", "double", "integer", "bool", "string_array", "double_array")}
-    | {"ParameterValue", "String", "str", "string", "list", "tuple", "int", "float", "to_string", "numpy_msg"}
+    | {
+        "ParameterValue",
+        "String",
+        "str",
+        "string",
+        "list",
+        "tuple",
+        "int",
+        "float",
+        "to_string",
+        "numpy_msg",
+        "TransportHints",
+    }
 )
 """What gives its argument, or what it is called on, as it is."""
+_CASTS = frozenset({"reinterpret_cast", "static_cast", "dynamic_cast", "const_cast"})
+"""What gives the same object as another type; of a number it may make another one."""
 _RESOLVERS = frozenset({"resolve_topic_name", "resolve_service_name", "resolveName", "resolve_name"})
 """What comes of their names is what comes of the name itself: ROS resolves it once more."""
+_MESSAGE_SPACES = ("msg::", "srv::", "action::")
 _MAKERS = frozenset({"make_shared", "make_unique", "new", "reset", "allocate_shared"})
+_PLAIN_PACKAGES = frozenset({"std", "boost", "rclpy", "rclcpp", "rclcpp_lifecycle", "rospy"}) | sys.stdlib_module_names
+"""What bases of these say to ROS is known: nothing, or what each node says."""
 _STREAMS = ("stringstream", "ostringstream")
 _POINTERS = ("shared_ptr", "unique_ptr", "weak_ptr", "Ptr")
 _WRITERS = ("printf", "strcpy", "strcat", "getline", "param", "load", "read", "parse")
 """Words in names of functions of C++ that may write into their arguments."""
+
+
+def _is_plain_base(name: str) -> bool:
+    """Whether a base says nothing to ROS by itself: one of ROS, or of a language."""
+    first, _, rest = name.partition(".")
+    is_builtin = not rest and hasattr(builtins, first)
+    return name in ros_calls.NODE_CLASSES or first in _PLAIN_PACKAGES or is_builtin or name == "ABC"
 
 
 class Scope:
@@ -81,12 +110,16 @@ class ProgramWalk(RosCallReader):
         self._index = index
         self._cpp = cpp or CppCode()
         self._modules: dict[SourceFile, Scope] = {}
+        self._script: Path | None = None
+        """The script that is run: modules beside it can be imported from everywhere."""
         self._pending: list[tuple[BoundFunction, FoundNode | None]] = []
         self._walked: set[tuple[int, int]] = set()
         self._barren: Counter[tuple[int, int]] = Counter()
         """How often a function was walked through in a row and gave nothing: loops over all that a node does take long."""
         self.is_cut = False
         """Whether there was more than is walked."""
+        self.strange_bases: list[str] = []
+        """Bases outside of the workspace, of nodes and of what speaks for one: they may say more to ROS."""
         self._evaluators: dict[str, Callable[[Any, Scope], Value]] = {
             "value": lambda expression, _: expression.value,
             "name": self._evaluate_name,
@@ -120,6 +153,7 @@ class ProgramWalk(RosCallReader):
 
     def walk_script(self, file: SourceFile, function_name: str = "") -> None:
         """Walk through a script of Python, or through a module and one function of it."""
+        self._script = None if function_name else file.path
         scope = self._open_module(file, "" if function_name else "__main__")
         for function in file.functions.get(function_name, ())[:1]:
             self._call(BoundFunction(function, None, scope), [], {})
@@ -160,6 +194,10 @@ class ProgramWalk(RosCallReader):
             self.file = before
         return self._modules[file]
 
+    def _find_module(self, name: str, file: SourceFile) -> SourceFile | None:
+        found = self._index.find_module(name, file.path)
+        return self._index.find_module(name, self._script) if found is None and self._script is not None else found
+
     def _find_name(self, name: str, scope: Scope) -> Value:
         holder = scope.find(name)
         if scope.file.language == "python":
@@ -172,7 +210,7 @@ class ProgramWalk(RosCallReader):
         if name in variables or name in file.classes:
             return self._resolve_import(variables[name], file) if name in variables else file.classes[name]
         for module in variables.get("*", ()):
-            other = self._index.find_module(module, file.path)
+            other = self._find_module(module, file)
             found = None if other is None or other is file else self._find_in_module(other, name)
             if found is not None and (not isinstance(found, ExternalName) or found.name != name):
                 return found
@@ -181,9 +219,9 @@ class ProgramWalk(RosCallReader):
     def _resolve_import(self, found: Value, file: SourceFile) -> Value:
         if not isinstance(found, ExternalName):
             return found
-        module = self._index.find_module(found.name, file.path)
+        module = self._find_module(found.name, file)
         outer, _, last = found.name.rpartition(".")
-        holder = self._index.find_module(outer, file.path) if outer and module is None else None
+        holder = self._find_module(outer, file) if outer and module is None else None
         return self._find_in_module(holder, last) if holder is not None and holder is not file else module or found
 
     def _find_cpp_name(self, name: str, scope: Scope) -> Value:
@@ -228,6 +266,9 @@ class ProgramWalk(RosCallReader):
             if known is None:
                 break
             name = f"{known[plain] if plain in known else f'{known[first]}::{last}'}{bracket}{rest}"
+        if name.startswith(_MESSAGE_SPACES) and owner is not None and "::" in owner.made_of.name:
+            # In the namespace of its package a message goes without it.
+            return f"{owner.made_of.name.partition('::')[0]}::{name}"
         return name
 
     def _find_class(self, name: str, scope: Scope | None) -> SourceClass | None:
@@ -262,6 +303,25 @@ class ProgramWalk(RosCallReader):
         classes = (each for each in self._list_family(found) if isinstance(each, SourceClass))
         return next((each.functions[name] for each in classes if name in each.functions), None)
 
+    def _find_inner_class(self, found: SourceClass, name: str) -> SourceClass | None:
+        """Return a class of Python that is defined inside of another one."""
+        classes = (each for each in self._list_family(found) if isinstance(each, SourceClass))
+        return next((inner for each in classes if (inner := each.file.classes.get(f"{each.name}.{name}"))), None)
+
+    def _list_subclasses(self, found: SourceClass) -> list[Value]:
+        """Return the classes of Python that are made of one, in the modules that were imported, however far."""
+        pending = [*self._modules]
+        for file in pending:
+            variables = self._open_module(file).variables
+            imported = [each.name for each in variables.values() if isinstance(each, ExternalName)]
+            for name in [*imported, *variables.get("*", ())]:
+                modules = (self._find_module(each, file) for each in (name, name.rpartition(".")[0]) if each)
+                module = next(filter(None, modules), None)
+                if module is not None and module not in pending:
+                    self._open_module(module)
+                    pending.append(module)
+        return [each for file in pending for each in file.classes.values() if found in self._list_bases(each)]
+
     def _find_field(self, found: SourceClass, name: str) -> str:
         """Return the type of a member of C++; empty where there is none of that name."""
         classes = (each for each in self._list_family(found) if isinstance(each, SourceClass))
@@ -285,6 +345,8 @@ class ProgramWalk(RosCallReader):
         else:
             given = [self.find_node(each) for each in (*arguments, *keywords.values())]
             made.node = next((each for each in given if each is not None), self.current_node)
+        if made.is_node or made.node is not before or before is None or self.is_ros_1:
+            self.strange_bases += [each for each in foreign if not _is_plain_base(each)]
         self.current_node = made.node
         self._construct_base(made, found, arguments, keywords)
         # What another package calls of a class that it knows by its base is not to be seen here: any of it may be.
@@ -496,16 +558,17 @@ class ProgramWalk(RosCallReader):
 
     def _get_member(self, whole: Value, name: str, unknown: UnknownText) -> Value:
         if isinstance(whole, WalkedObject):
-            method = None if name in whole.fields else self._find_method(whole.made_of, name)
-            return whole.fields.get(name, unknown) if method is None else BoundFunction(method[0], whole)
+            return (
+                whole.fields[name] if name in whole.fields else self._get_of_class(whole.made_of, name, whole, unknown)
+            )
         if isinstance(whole, SourceFile):
             found = self._find_in_module(whole, name)
             inner = self._index.find_module(f"{whole.path.parent.name}.{name}", whole.path)
             return inner if isinstance(found, ExternalName) and inner is not None else found
         if isinstance(whole, SourceClass):
-            method = self._find_method(whole, name)
-            constant = self._find_constant(whole, name, self._open_module(whole.file)) if method is None else _MISSING
-            return BoundFunction(method[0]) if method is not None else unknown if constant is _MISSING else constant
+            part = self._get_of_class(whole, name, None, unknown)
+            constant = self._find_constant(whole, name, self._open_module(whole.file)) if part is unknown else _MISSING
+            return part if constant is _MISSING else constant
         if isinstance(whole, ExternalName):
             full_name = ExternalName(f"{whole.name}.{name}")
             qos = ros_calls.read_qos_name(full_name.name)
@@ -514,12 +577,17 @@ class ProgramWalk(RosCallReader):
             return whole[name]
         return whole if isinstance(whole, ParameterValue) and name in _PASSED_THROUGH else unknown
 
+    def _get_of_class(self, found: SourceClass, name: str, owner: WalkedObject | None, unknown: UnknownText) -> Value:
+        """Return a method of a class, or a class inside of it."""
+        method = self._find_method(found, name)
+        return BoundFunction(method[0], owner) if method else self._find_inner_class(found, name) or unknown
+
     # Calls
 
     def _evaluate_call(self, expression: Expression, scope: Scope) -> Value:  # noqa: C901, PLR0911 - what may be called, in order
         called, is_cpp = expression.parts[0], scope.file.language == "cpp"
         name = str(called.value).replace("::", ".")
-        if called.kind == "name" and name in plain_calls.OPERATORS | {"for", "<<"}:
+        if called.kind == "name" and name in plain_calls.OPERATORS | _LOOPS | {"<<"}:
             return self._evaluate_operation(name, expression, scope)
         arguments = [self._evaluate(each, scope) for each in expression.parts[1:]]
         keywords = {key: self._evaluate(each, scope) for key, each in expression.keywords.items()}
@@ -535,6 +603,8 @@ class ProgramWalk(RosCallReader):
         call = RosCall(whole, target, name.rpartition(".")[2], arguments, keywords, types, self._span(expression))
         if isinstance(target, BoundFunction):
             return self._call_function(target, call, expression, scope)
+        if is_cpp and (own := self._find_own_method(call)) is not None:
+            return self._call_function(own, call, expression, scope)
         if isinstance(target, SourceClass):
             return self._construct_class(target, arguments, keywords, call.span, types)
         if name.endswith(".make_shared") and is_cpp and not name.startswith(("std.", "boost.")):
@@ -553,6 +623,15 @@ class ProgramWalk(RosCallReader):
             is_unset = isinstance(settle(value), UnknownText)
             return NotImplemented if is_unset else True
         return self._call_plainly(call, expression, scope) if result is NotImplemented else result
+
+    def _find_own_method(self, call: RosCall) -> BoundFunction | None:
+        """Return the only method of this name in the program, where it is handed the node: those of rclcpp are not."""
+        if not isinstance(call.whole, UnknownText) or self.find_node(call.get(0)) is None:
+            return None
+        owners = [found for found in self._cpp.classes.values() if len(found.functions.get(call.method, ())) == 1]
+        if len(owners) != 1:
+            return None
+        return BoundFunction(owners[0].functions[call.method][0], WalkedObject(owners[0]))
 
     def _call_function(self, target: BoundFunction, call: RosCall, expression: Expression, scope: Scope) -> Value:
         function, arguments = target.function, call.arguments
@@ -672,7 +751,11 @@ class ProgramWalk(RosCallReader):
             return first if len(arguments) == 1 and isinstance(first, list) else arguments
         if plain.endswith("string") and not arguments:
             return ""
-        return first if len(arguments) == 1 else self._give_up(expression)
+        if len(arguments) == 1:
+            return first
+        unknown = self._give_up(expression)
+        unknown.foreign_type = plain if "." in plain else ""
+        return unknown
 
     def _make_settings(self, call: RosCall, name: str) -> tuple[Value, Value]:
         return (
@@ -681,14 +764,8 @@ class ProgramWalk(RosCallReader):
         )
 
     def _evaluate_operation(self, sign: str, expression: Expression, scope: Scope) -> Value:
-        if sign == "for":
-            items = plain_calls.list_items(self._evaluate(expression.parts[1], scope))
-            inner = Scope(scope.file, scope, scope.self_object)
-            found = []
-            for item in () if items is None or self.is_cut else items[: plain_calls.MAX_ITEMS]:
-                self._assign(expression.parts[2], item, inner)
-                found.append(self._evaluate(expression.parts[3], inner))
-            return NotImplemented if items is None else found
+        if sign in _LOOPS:
+            return self._evaluate_comprehension(sign, expression, scope)
         values = [self._evaluate(each, scope) for each in expression.parts[1:]]
         if sign != "<<":
             return plain_calls.operate(sign, values)
@@ -697,7 +774,36 @@ class ProgramWalk(RosCallReader):
         values[0].parts.append(values[1])
         return values[0]
 
-    def _call_plainly(  # noqa: C901, PLR0911 - a kind of functions each
+    def _evaluate_comprehension(self, sign: str, expression: Expression, scope: Scope) -> Value:
+        if sign == "pairs":
+            pairs = self._evaluate(expression.parts[1], scope)
+            known = (
+                [(settle(each[0]), each[1]) for each in pairs if isinstance(each, list)]
+                if isinstance(pairs, list)
+                else []
+            )
+            is_table = bool(known) and all(isinstance(key, str | int | float) for key, _ in known)
+            return dict(known) if is_table else NotImplemented
+        iterable, target, item, *wanted = expression.parts[1:]
+        items = plain_calls.list_items(self._evaluate(iterable, scope))
+        inner = Scope(scope.file, scope, scope.self_object)
+        found: list[Value] = []
+        is_known = items is not None
+        self.conditions += items is None
+        for each in [self._give_up(iterable)] if items is None else items[: plain_calls.MAX_ITEMS]:
+            self._assign(target, each, inner)
+            verdicts = [plain_calls.judge(self._evaluate(condition, inner)) for condition in wanted]
+            if self.is_cut or False in verdicts:
+                continue
+            self.conditions += None in verdicts
+            value = self._evaluate(item, inner)
+            self.conditions -= None in verdicts
+            is_known &= None not in verdicts
+            found += value if sign == "for all" and isinstance(value, list) else [value]
+        self.conditions -= items is None
+        return found[: plain_calls.MAX_ITEMS] if is_known else NotImplemented
+
+    def _call_plainly(  # noqa: C901, PLR0911, PLR0912 - a kind of functions each
         self, call: RosCall, expression: Expression, scope: Scope
     ) -> Value:
         """Return what a function gives that neither the workspace nor ROS has."""
@@ -717,6 +823,10 @@ class ProgramWalk(RosCallReader):
             return join_texts(whole.parts)
         if method == "getattr" and len(arguments) > 1 and isinstance(settle(arguments[1]), str):
             return self._get_member(first, settle(arguments[1]), self._give_up(expression))
+        if method == "__subclasses__" and isinstance(whole, SourceClass):
+            return self._list_subclasses(whole)
+        if method == "__setattr__" and isinstance(whole, WalkedObject) and len(arguments) > 1:
+            return plain_calls.call_plainly(None, "setattr", [whole, *arguments])
         if full_name.endswith("Node.__init__") and isinstance(first, WalkedObject):
             self._name_node(first, arguments[1:], call.keywords)
         is_function = isinstance(call.target, ExternalName)
@@ -727,6 +837,8 @@ class ProgramWalk(RosCallReader):
         )
         if known is not NotImplemented:
             return known
+        if method in _CASTS and isinstance(first, WalkedObject | NodeHandle):
+            return first
         if method in _PASSED_THROUGH and (first is not None if is_function else not isinstance(whole, ExternalName)):
             return first if is_function else whole
         if scope.file.language == "cpp" and any(word in method.lower() for word in _WRITERS):

@@ -134,14 +134,17 @@ class _Reader:
         body = self.read_body(node.body, depth)
         return Function(node.name, tuple(parameters), body, self._file, owner, is_static)
 
-    def _read_class(self, node: ast.ClassDef, depth: int) -> None:
+    def _read_class(self, node: ast.ClassDef, depth: int, owner: str = "") -> None:
         bases = tuple(ast.unparse(base) for base in node.bases if isinstance(base, ast.Name | ast.Attribute))
-        found = SourceClass(node.name, self._file, bases)
-        self._file.classes[node.name] = found
-        for item in node.body:
+        name = f"{owner}{node.name}"
+        found = SourceClass(name, self._file, bases)
+        self._file.classes[name] = found
+        for item in node.body if depth < MAX_DEPTH else ():
             if isinstance(item, ast.FunctionDef | ast.AsyncFunctionDef):
-                function = self._read_function(item, node.name, depth)
+                function = self._read_function(item, name, depth)
                 found.functions.setdefault(item.name, []).append(function)
+            elif isinstance(item, ast.ClassDef):
+                self._read_class(item, depth + 1, f"{name}.")
             else:
                 found.field_values += self._read_statement(item, depth)
 
@@ -201,10 +204,25 @@ class _Reader:
                 return made
             case ast.Starred(value=inner) | ast.Await(value=inner):
                 return self._read(inner, depth)
-            case ast.ListComp(elt=item, generators=[ast.comprehension(target=target, iter=iterable, ifs=[])]):
-                parts = [self._read(each, depth) for each in (iterable, target, item)]
-                return self._make(node, "call", None, (Expression("name", "for", node.lineno, 1, "for"), *parts))
+            case ast.ListComp(elt=item) | ast.SetComp(elt=item) | ast.GeneratorExp(elt=item):
+                return self._read_comprehension(node, self._read(item, depth), node.generators, depth)
+            case ast.DictComp(key=key, value=value):
+                pair = self._make(node, "list", None, [self._read(each, depth) for each in (key, value)])
+                pairs = self._read_comprehension(node, pair, node.generators, depth)
+                return self._make(node, "call", None, (Expression("name", "pairs", node.lineno, 1, "pairs"), pairs))
         return self._make(node, "unknown")
+
+    def _read_comprehension(
+        self, node: ast.expr, item: Expression, generators: Sequence[ast.comprehension], depth: int
+    ) -> Expression:
+        """Return loops in one another, from the inside; all that the inner ones give is one list."""
+        for place, each in reversed(list(enumerate(generators))):
+            word = "for" if place == len(generators) - 1 else "for all"
+            parts = [self._read(part, depth) for part in (each.iter, each.target)]
+            conditions = [self._read(condition, depth) for condition in each.ifs]
+            name = Expression("name", word, node.lineno, 1, word)
+            item = self._make(node, "call", None, (name, *parts, item, *conditions))
+        return item
 
     def _read_operation(self, node: ast.expr, sign: str, operands: Iterable[ast.expr], depth: int) -> Expression:
         name = Expression("name", sign, node.lineno, node.col_offset + 1, sign)

@@ -8,6 +8,7 @@ from archgen.plugin import dataclass, replace
 from archgen.plugin.importing import Span
 from archgen.plugins.ros.sources import ros_calls
 from archgen.plugins.ros.sources.ros_calls import (
+    PACKED_IMAGES,
     EndpointCall,
     read_message_name,
     read_qos,
@@ -211,7 +212,9 @@ class RosCallReader:
         if parameter is not NotImplemented or not is_ours:
             return parameter
         tables = [ros_calls.RCLCPP_METHODS] if self.is_cpp else [ros_calls.RCLPY_METHODS]
-        tables += [ros_calls.ROSCPP_METHODS] if self.is_cpp and self.is_ros_1 else []
+        # Words such as `subscribe` are used by others, too: clients of MQTT, for one.
+        is_foreign = isinstance(whole, UnknownText) and bool(whole.foreign_type)
+        tables += [ros_calls.ROSCPP_METHODS] if self.is_cpp and self.is_ros_1 and not is_foreign else []
         known = next((table[method] for table in tables if method in table), None)
         return NotImplemented if known is None else self._add_call(known, call, call.types)
 
@@ -228,7 +231,12 @@ class RosCallReader:
     ) -> UnknownText:
         use, has_info = ros_calls.read_image_call(method) or ("", False)
         name = _join_prefix(prefix, arguments[0]) if arguments else UnknownText(method, span)
-        self._add(node, FoundEndpoint(use, "topic", name, ros_calls.IMAGE_TYPES[0], span))
+        packed = [text for each in arguments[1:] if isinstance(text := settle(each), str) and text in PACKED_IMAGES]
+        received, message = name, ros_calls.IMAGE_TYPES[0]
+        if use == "subscribes" and packed:
+            # Each transport has a topic of its own below that of the images.
+            received, message = join_texts([name, "/", packed[0]]), PACKED_IMAGES[packed[0]]
+        self._add(node, FoundEndpoint(use, "topic", received, message, span))
         if has_info:
             text = settle(name)
             beside: Value = UnknownText("camera_info beside it", span)
@@ -252,8 +260,8 @@ class RosCallReader:
             name = _join_prefix(handle.prefix, name)
         elif self.is_ros_1 and isinstance(call.whole, UnknownText):
             name = JoinedText((call.whole, name))
-        message = read_message_name(types[0], known.flow) if types and known.type_at is None else ""
-        if known.type_at is not None:
+        message = read_message_name(types[0], known.flow) if types else ""
+        if known.type_at is not None and not message:
             given = call.get(known.type_at, _TYPE_KEYS)
             text = settle(given) if isinstance(settle(given), str) else spell_external(given)
             message = read_message_name(text.replace("/", "."), known.flow)
@@ -329,7 +337,8 @@ class RosCallReader:
         node.defaults[plain] = default
         key, own_name = plain.replace("/", "."), settle(node.name)
         by_name = self.node_parameters.get(own_name, {}) if isinstance(own_name, str) else {}
-        given = self._given.get(key, by_name.get(key)) if is_own else None
+        given = next((each[key] for each in (self._given, by_name) if key in each), self._given.get("*"))
+        given = given if is_own else None
         return ParameterValue(plain if is_own else "", default if given is None else given, default)
 
 

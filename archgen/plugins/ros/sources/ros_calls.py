@@ -67,6 +67,12 @@ FUNCTIONS = {
     "realtime_tools.RealtimePublisher": EndpointCall("publishes", "topic", 0, has_node=True),
 }
 IMAGE_TYPES = ("sensor_msgs/msg/Image", "sensor_msgs/msg/CameraInfo")
+PACKED_IMAGES = {
+    "compressed": "sensor_msgs/msg/CompressedImage",
+    "compressedDepth": "sensor_msgs/msg/CompressedImage",
+    "theora": "theora_image_transport/msg/Packet",
+}
+"""The messages of transports of images, by the words that stand for them."""
 _IMAGE_USES = {
     "advertise": "publishes",
     "publisher": "publishes",
@@ -116,11 +122,15 @@ def read_message_name(text: str, flow: str) -> str:
         .strip(".")
         .split(".")
     )
+    if flow == "service" and parts[-1] == "Request":  # a callback's own: `std_srvs::Trigger::Request`
+        parts.pop()
     if len(parts) >= 4 and parts[-3] in {"msg", "srv", "action"}:  # noqa: PLR2004 - the module of one: `std_msgs.msg._string.String`
         parts = [*parts[:-2], parts[-1]]
     if len(parts) == 2 and parts[0][:1].islower() and parts[1][:1].isupper():  # noqa: PLR2004 - roscpp's `std_msgs::String`
         parts = [parts[0], {"topic": "msg", "service": "srv", "action": "action"}[flow], parts[1]]
-    if len(parts) != 3 or parts[1] not in {"msg", "srv", "action"}:  # noqa: PLR2004 - package, kind, name
+        parts[2] = parts[2].removesuffix("Request") if flow == "service" else parts[2]
+    kinds = {"msg", "srv", "action"}
+    if len(parts) != 3 or parts[1] not in kinds or parts[0] in kinds:  # noqa: PLR2004 - package, kind, name
         return ""
     package, kind, name = parts
     if flow == "action" and name.endswith("Action"):

@@ -106,7 +106,7 @@ class SourceFile:
     """What stands outside of functions and classes."""
     functions: dict[str, list[Function]] = field(default_factory=dict)
     classes: dict[str, SourceClass] = field(default_factory=dict)
-    """By name; in C++ the qualified one, `my_robot::Driver`."""
+    """By name, the qualified one: `my_robot::Driver` in C++, `Driver.State` for a class inside of one in Python."""
     aliases: dict[str, str] = field(default_factory=dict)
     """`using` and `typedef` of C++, and constants of the preprocessor as text."""
     includes: tuple[str, ...] = ()

@@ -19,6 +19,8 @@ class UnknownText:
 
     text: str
     span: Span
+    foreign_type: str = ""
+    """The dotted type of an object of C++ whose class lies elsewhere."""
 
 
 MAX_TEXT = 2000

@@ -16,6 +16,7 @@ from archgen.plugin.importing import (
     load_shipped_component_types,
     make_id,
     make_unique_id,
+    node_to_data,
 )
 from archgen.plugin.ros import find_name_fault, find_node_name_fault
 from archgen.plugins.ros.launch.launch_actions import LaunchedNode
@@ -44,6 +45,11 @@ _POOR_WORDS = frozenset(
 _MANAGER = "lifecycle_manager"
 _MANAGER_PARAMETERS = ("node_names", "autostart")
 """By these a manager of Nav2 says whom it activates."""
+_STAMP_PARAMETERS = ("enable_stamped_cmd_vel", "use_stamped")
+"""By these programs of Nav2 and twist_mux say whether their velocities have a time."""
+_VELOCITIES = ("geometry_msgs/msg/Twist", "geometry_msgs/msg/TwistStamped")
+_NO_VARIANT = "base"
+"""What the project itself is called, where variants are named."""
 _USUAL_QOS = {"depth": 10}
 """What ROS takes where nothing else is said."""
 _HINT = "launch"
@@ -60,6 +66,14 @@ class NodeKnowledge:
     library_type: str
     launch_files: tuple[str, ...] = ()
     """Which of several launch files start it, where some do not."""
+    manager: str = ""
+    """The name of the controller manager in whose process it runs."""
+
+    @property
+    def is_nameless(self) -> bool:
+        """Whether nobody says what the node is called: neither who launches it, nor its sources, nor a type of the library."""
+        is_told = self.program is not None or self.library_type or self.node.known_name
+        return not is_told and self.node.form in {"node", "loaded"}
 
 
 @dataclass(slots=True, eq=False)
@@ -85,11 +99,16 @@ class WrittenNode:
 def _list_variants(known: NodeKnowledge) -> dict[str, str]:
     """Return the variants in which a node runs that the defaults do not start, or only one of several launch files."""
     if known.node.is_on:
-        return {make_id(find_stem(Path(file)), "variant"): f"Launched by {file}" for file in known.launch_files}
+        return {_name_variant(find_stem(Path(file))): f"Launched by {file}" for file in known.launch_files}
     conditions = tuple(dict.fromkeys(known.node.conditions))
     words = re.findall(r"\w+", conditions[-1].replace("unless", "no")) if conditions else []
     words = [word for word in words if word not in _CONDITION_SIGNS]
-    return {make_id("_".join(words), "variant"): f"Launched {' and '.join(conditions)}"} if words else {}
+    return {_name_variant("_".join(words)): f"Launched {' and '.join(conditions)}"} if words else {}
+
+
+def _name_variant(words: str) -> str:
+    name = make_id(words, "variant")
+    return name if name != _NO_VARIANT else f"{name}_variant"
 
 
 class NodeWriter:
@@ -103,6 +122,8 @@ class NodeWriter:
         """Return a launched node, and others that its program makes; `data` is what the launch file says of it."""
         hints = data.get("hints", {}).get(_HINT, {})
         kept = {_HINT: {key: hints[key] for key in _KEPT_HINTS if key in hints}}
+        if known.is_nameless:
+            kept[_HINT]["name"] = "unknown"
         body = {key: value for key, value in data.items() if key != "hints"}
         if kept[_HINT]:
             body["hints"] = kept
@@ -110,18 +131,39 @@ class NodeWriter:
         data = {"implements": f"{group}.{node_id}", **body}
         written = WrittenNode(node_id, group, data, {}, known.node.package, _list_variants(known), known=known)
         self._account.count("node")
+        if known.manager:
+            written.comments[()] = f"in the process of {known.manager}"
         if known.library_type:
-            written.component["is"] = f"{LIBRARY}.{known.library_type}"
+            written.component |= {"is": f"{LIBRARY}.{known.library_type}", **self._choose_stamps(known)}
             self._account.count("node of the library")
         if known.program is None:
             if not known.library_type and known.node.form != "program":
-                written.comments[()] = "what it says to ROS is not known: no sources, no type of the library"
+                unknown = "its name, and what it says to ROS, are" if known.is_nameless else "what it says to ROS is"
+                words = f"{unknown} not known: no sources, no type of the library"
+                written.comments[()] = "; ".join(filter(None, [written.comments.get(()), words]))
                 self._account.count("node without sources")
             return [written]
         self._account.count("node with sources")
         first, *others = known.program.nodes
         self._write_found(written, first, known, is_first=True)
         return [written, *(self._write_other(written, found, known) for found in others)]
+
+    def _choose_stamps(self, known: NodeKnowledge) -> dict[str, Any]:
+        """Return the ports of a library type whose velocities have a time, or none, by a parameter: their messages."""
+        given = flatten_parameters(known.node.parameters)
+        stamped = next((given[name] for name in _STAMP_PARAMETERS if isinstance(given.get(name), bool)), None)
+        changed: dict[str, Any] = {}
+        if stamped is None:
+            return changed
+        facts: Any = node_to_data(load_shipped_component_types(self._distro)[known.library_type].value)
+        for side in ("inputs", "outputs"):
+            for port, body in facts.get(side, {}).items():
+                message = body.get("type") if isinstance(body, Mapping) else body
+                if message == _VELOCITIES[not stamped]:
+                    typed = _VELOCITIES[stamped]
+                    ports = changed.setdefault(side, FlowMapping())
+                    ports[port] = typed if side == "outputs" else FlowMapping({"type": typed})
+        return changed
 
     def _write_other(self, first: WrittenNode, found: FoundNode, known: NodeKnowledge) -> WrittenNode:
         """Return another node of the same process: what starts the first one counts for it, too."""
@@ -154,6 +196,7 @@ class NodeWriter:
 
     def _write_found(self, written: WrittenNode, found: FoundNode, known: NodeKnowledge, *, is_first: bool) -> None:
         data, name, namespace = written.data, settle(found.name), settle(found.namespace)
+        _open_below_base(written, known.program)
         written.found = found
         if (not is_first or not known.node.name) and isinstance(name, str) and not find_node_name_fault(name):
             data.pop("name", None)
@@ -175,15 +218,16 @@ class NodeWriter:
                 endpoint.name = JoinedText((namespace, "/", endpoint.name))
             self._write_endpoint(written, endpoint, is_ros_1=known.program is not None and known.program.is_ros_1)
         named_by = {
-            each.name.name: settle(each.name)
+            each.name.name: name
             for each in found.endpoints
             if isinstance(each.name, ParameterValue) and each.name.name and each.name.value is not each.name.default
+            if not isinstance(name := settle(each.name), UnknownText)
         }
         if named_by and not (known.program is not None and known.program.is_ros_1):
             # What names its topics may stand in a file, below a name that only the program knows.
             data["parameters"] = nest_parameters({**named_by, **flatten_parameters(data.get("parameters", {}))})
         if len(found.periods) == 1 and found.periods[0] and not {"subscribes", "serves"} & set(data):
-            data["timing"] = {"period": f"{found.periods[0] * 1000:.6g} ms"}
+            data["timing"] = {**data.get("timing", {}), "period": f"{found.periods[0] * 1000:.6g} ms"}
 
     def _write_endpoint(self, written: WrittenNode, endpoint: FoundEndpoint, *, is_ros_1: bool) -> None:
         name = settle(endpoint.name)
@@ -219,6 +263,13 @@ class NodeWriter:
             words = f"the name of what it {endpoint.use} is computed: {known_part}`{expression}`"
             self._account.add_note("name", words, at, fate="noted")
             self._account.count("endpoint without a name")
+
+
+def _open_below_base(written: WrittenNode, program: ReadProgram | None) -> None:
+    """Say that there may be more of a node whose class has a base that nobody read."""
+    if program is not None and program.strange_base:
+        written.component["open"] = ["*"]
+        written.comments["open",] = f"its base `{program.strange_base[:80]}` lies elsewhere, and may use more"
 
 
 def _is_unclear(name: str, unclear_remaps: set[str]) -> bool:

@@ -9,10 +9,11 @@ from archgen.plugin import dataclass
 from archgen.plugin.importing import Span
 from archgen.plugins.ros.launch.launch_actions import LaunchedNode, join_names
 from archgen.plugins.ros.launch.launch_run import LaunchRun
+from archgen.plugins.ros.launch.launch_values import OPEN
 from archgen.plugins.ros.ros_package.import_account import ImportAccount
 from archgen.plugins.ros.sources.program_walk import ProgramWalk
 from archgen.plugins.ros.sources.source_index import CppCode, SourceIndex
-from archgen.plugins.ros.sources.walk_values import FoundNode, settle
+from archgen.plugins.ros.sources.walk_values import FoundNode, UnknownText, settle, show_value
 from archgen.plugins.ros.workspace.program_sources import WorkspaceFiles, WorkspacePackage
 
 CPP_EXTRA = "pip install 'archgen[sources]'"
@@ -25,6 +26,8 @@ class ReadProgram:
 
     nodes: tuple[FoundNode, ...]
     is_ros_1: bool
+    strange_base: str = ""
+    """A base of its classes that lies elsewhere, and may say more to ROS than what was read; empty where there is none."""
 
 
 class ProgramReader:
@@ -56,11 +59,13 @@ class ProgramReader:
             return None
         main = next((each for each in walk.nodes if settle(each.name) == node.name), None)
         main = main or next((each for each in walk.nodes if each.endpoints), walk.nodes[0])
-        others = tuple(each for each in walk.nodes if each is not main and each.endpoints)
+        # What is made twice at one place by one name, as by a module that runs when it is imported, is one after the other.
+        made = {(each.span, show_value(each.name), show_value(each.namespace)): each for each in (*walk.nodes, main)}
+        others = tuple(each for each in made.values() if each is not main and each.endpoints)
         if walk.is_cut:
             words = "it takes more steps than archgen walks: what comes later is not read"
             self._account.add_note("program", words, main.span)
-        return ReadProgram((main, *others), walk.is_ros_1)
+        return ReadProgram((main, *others), walk.is_ros_1, next(iter(walk.strange_bases), ""))
 
     def _read_files(self, node: LaunchedNode, name: str) -> dict[str, Any]:
         found: dict[str, Any] = {}
@@ -84,7 +89,7 @@ class ProgramReader:
         if not is_python and not self._has_cpp(node):
             return None
         code = None if is_python else self._gather(package, "" if plugin else node.executable)
-        given = flatten_parameters(node.parameters)
+        given = _mark_unknown(flatten_parameters(node.parameters), node)
         walk = ProgramWalk(self._index, code, given, self._account.budget, is_ros_1=package.manifest.is_ros_1)
         names = {"name": node.name, "namespace": node.namespace}
         walk.node_names = {key: name for key, name in names.items() if name}
@@ -135,6 +140,16 @@ def flatten_parameters(parameters: Mapping[str, Any], outer: str = "", depth: in
         full_name = f"{outer}{name}".replace("/", ".")
         if isinstance(value, Mapping) and depth < _MAX_DEPTH:
             found |= flatten_parameters(value, f"{full_name}.", depth + 1)
-        elif not isinstance(value, str) or "$(" not in value:
+        else:
             found[full_name] = list(value) if isinstance(value, tuple) else value
     return found
+
+
+def _mark_unknown(given: Mapping[str, Any], node: LaunchedNode) -> dict[str, Any]:
+    """Return the parameters of a node as its program sees them: those that only the launch knows are not what the program has by default."""
+    found = {
+        name: UnknownText(value, node.span) if isinstance(value, str) and OPEN in value else value
+        for name, value in given.items()
+    }
+    unclear = {**node.unclear_parameters, **dict.fromkeys(node.parameter_commands, "what a command prints")}
+    return {**{name.replace("/", "."): UnknownText(why, node.span) for name, why in unclear.items()}, **found}

@@ -61,6 +61,8 @@ class WorkspacePackage:
     libraries: dict[str, tuple[Path, ...]] = field(default_factory=dict)
     """The sources of its libraries, by the names of targets."""
     links: dict[str, list[str]] = field(default_factory=dict)
+    output_names: dict[str, str] = field(default_factory=dict)
+    """What programs are called that have another name than their target."""
 
 
 class WorkspaceFiles:
@@ -161,9 +163,15 @@ class WorkspaceFiles:
             shown = {path: self.shown[path] for path in package.files}
             for call in read_cmake_calls(folder / CMAKE_FILE, package.manifest.name, shown, self.account):
                 self._read_cmake_call(package, call, files)
+            for target, name in package.output_names.items():
+                if target in package.programs:
+                    package.programs[name] = package.programs.pop(target)
+                    package.links[name] = package.links.pop(target, [])
         for path in package.files:
             # What a launch file starts by its file name, installed or not: scripts of ROS 1, above all.
-            if path.parent.name in {"scripts", "nodes", "bin", "script"} and path.suffix in {".py", ""}:
+            is_beside_modules = package.manifest.is_ros_1 and path.parent == folder / "src" and path.suffix == ".py"
+            is_script = path.parent.name in {"scripts", "nodes", "bin", "script"} and path.suffix in {".py", ""}
+            if is_script or is_beside_modules:
                 package.programs.setdefault(path.name, ProgramSources("python", (path,)))
 
     def _read_text(self, path: Path) -> str:
@@ -223,6 +231,8 @@ class WorkspaceFiles:
                 package.programs[words[0]] = ProgramSources("cpp", (*(known.sources if known else ()), *sources))
         elif name in {"target_link_libraries", "ament_target_dependencies"}:
             package.links.setdefault(words[0], []).extend(each for each in words[1:] if each not in _LIBRARY_WORDS)
+        elif call.output_name:
+            package.output_names[words[0]] = call.output_name
         elif name == "rclcpp_components_register_node" and {"PLUGIN", "EXECUTABLE"} <= set(words[:-1]):
             plugin, executable = (words[words.index(word) + 1] for word in ("PLUGIN", "EXECUTABLE"))
             package.programs[executable] = ProgramSources("cpp", plugin=plugin)

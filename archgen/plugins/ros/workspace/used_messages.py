@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from archgen.plugin.importing import ForeignFileError, Span, make_unique_id, read_bounded
+from archgen.plugin.ros import is_ros_1
 from archgen.plugins.ros.ros_package.import_account import ImportAccount
 from archgen.plugins.ros.ros_package.message_files import make_type_name, read_message_definition
 from archgen.plugins.ros.workspace.node_components import NodeKnowledge
@@ -18,7 +19,7 @@ _FIELD_TYPE = re.compile(r"(?:([a-z][a-z0-9_]*)/)?(?:msg/)?([A-Z]\w*)")
 
 
 def read_used_messages(
-    workspace: WorkspaceFiles, knowledge: Sequence[NodeKnowledge], account: ImportAccount
+    workspace: WorkspaceFiles, knowledge: Sequence[NodeKnowledge], account: ImportAccount, distro: str
 ) -> dict[str, Any]:
     """Return the types of the messages that are used, and of those in their fields; what archgen knows of ROS is left out."""
     pending = [
@@ -36,25 +37,21 @@ def read_used_messages(
             continue
         seen.add(message)
         path = package.manifest.folder / f"{message.partition('/')[2]}.{message.split('/')[1]}"
-        data = _read_message(workspace, path, message, account, is_ros_1=package.manifest.is_ros_1)
+        shown = workspace.shown.get(path)
+        data = {} if shown is None else _read_message(path, shown, message, account, distro)
         if len(data) > 1:
             found[make_unique_id(make_type_name(message), found.keys())] = data
             pending += _list_inner(data, package.manifest.name)
     return found
 
 
-def _read_message(
-    workspace: WorkspaceFiles, path: Path, message: str, account: ImportAccount, *, is_ros_1: bool
-) -> dict[str, Any]:
-    shown = workspace.shown.get(path)
-    if shown is None:
-        return {}
+def _read_message(path: Path, shown: str, message: str, account: ImportAccount, distro: str) -> dict[str, Any]:
     try:
         text = read_bounded(path, _MAX_BYTES).decode("utf-8-sig", "replace")
     except ForeignFileError as error:
         account.add_note("file", error.message, Span.of_file(shown))
         return {}
-    data, problems = read_message_definition(text, message, shown, is_ros_1=is_ros_1)
+    data, problems = read_message_definition(text, message, shown, is_ros_1=is_ros_1(distro), distro=distro)
     for problem in problems:
         account.add_note("message", problem.message, problem.span, problem.help or "")
     account.count("message")

@@ -10,11 +10,9 @@ from archgen.plugin import dataclass
 from archgen.plugin.importing import (
     ForeignFileError,
     ForeignImport,
-    MappingNode,
     Span,
-    load_shipped_component_types,
+    index_shipped_programs,
     make_id,
-    node_to_data,
     title_from_id,
 )
 from archgen.plugins.ros.launch.launch_actions import LaunchedNode
@@ -23,9 +21,12 @@ from archgen.plugins.ros.launch.launch_import import LaunchedFiles, find_stem, l
 from archgen.plugins.ros.launch.launch_run import LaunchRun
 from archgen.plugins.ros.launch.launch_slices import SliceMaker
 from archgen.plugins.ros.ros_package.import_account import ImportAccount
+from archgen.plugins.ros.workspace.gazebo_programs import read_gazebo_program
+from archgen.plugins.ros.workspace.loaded_controllers import find_controller_type, keep_own_remaps, list_controllers
 from archgen.plugins.ros.workspace.node_components import NodeKnowledge
 from archgen.plugins.ros.workspace.program_reading import ProgramReader
 from archgen.plugins.ros.workspace.program_sources import WorkspaceFiles
+from archgen.plugins.ros.workspace.rviz_displays import read_rviz
 from archgen.plugins.ros.workspace.used_messages import read_used_messages
 from archgen.plugins.ros.workspace.workspace_slices import make_slices
 
@@ -48,25 +49,28 @@ class JoinedWorkspace:
     is_distro_known: bool
 
 
-def read_workspace(
+def read_workspace(  # noqa: PLR0913 - one for each option
     files: Sequence[Path],
     arguments: Mapping[str, str] | None = None,
     *,
     environment: Mapping[str, str] | None = None,
     launch_files: Sequence[str] = (),
     distro: str = "",
+    group_by: str | None = None,
 ) -> ForeignImport:
     """Read a workspace. Raise ForeignFileError.
 
     `files` are folders with packages. `launch_files` are those that start the robot, as `PACKAGE/FILE` or as paths, and may be left
     out where one alone is included by no other. What only some of several start stands in variants; `none` takes each program.
+    `group_by` is what makes a group of nodes: `folder` or `package` of their programs, `namespace`, or `codeowners`.
     """
     workspace = join_workspace(files, arguments, environment, launch_files, distro)
     account, launched = workspace.account, workspace.launched
     uses_library = any(each.library_type for each in workspace.knowledge)
-    made = make_slices(SliceMaker(launched.run), workspace.knowledge, workspace.files, account, workspace.distro)
+    maker = SliceMaker(launched.run)
+    made = make_slices(maker, workspace.knowledge, workspace.files, account, workspace.distro, group_by=group_by)
     slices = dict(made.slices)
-    types = read_used_messages(workspace.files, workspace.knowledge, account)
+    types = read_used_messages(workspace.files, workspace.knowledge, account, workspace.distro)
     if types:
         slices["messages.yaml"] = {"types": types}
     if not workspace.is_distro_known and uses_library:
@@ -110,7 +114,16 @@ def join_workspace(
     known_distro = distro or ("noetic" if is_ros_1 else _ASSUMED_DISTRO)
     reader = ProgramReader(workspace, account, launched.run)
     starters = _list_starters(launched)
-    knowledge = tuple(_read_knowledge(node, reader, known_distro, starters[_identify(node)]) for node in nodes)
+    knowledge = tuple(
+        _read_knowledge(node, reader, launched.run, known_distro, starters[_identify(node)]) for node in nodes
+    )
+    for controller, manager, loader in list_controllers(nodes, launched.run):
+        library_type = find_controller_type(controller, known_distro)
+        program = None if library_type else reader.read_node(controller)
+        keep_own_remaps(controller, library_type, known_distro)
+        controller.plugin = ""
+        started_by = starters[_identify(loader)]
+        knowledge += (NodeKnowledge(controller, program, library_type, started_by, manager.known_name),)
     if is_without_launch:
         # Programs that are no nodes.
         knowledge = tuple(each for each in knowledge if each.program or each.library_type)
@@ -148,24 +161,18 @@ def _list_starters(launched: LaunchedFiles) -> dict[tuple[str, ...], tuple[str, 
 
 
 def _read_knowledge(
-    node: LaunchedNode, reader: ProgramReader, distro: str, launch_files: tuple[str, ...]
+    node: LaunchedNode, reader: ProgramReader, run: LaunchRun, distro: str, launch_files: tuple[str, ...]
 ) -> NodeKnowledge:
     program = reader.read_node(node) if node.form in {"node", "loaded"} and (node.executable or node.plugin) else None
     library_type = "" if program is not None else _find_library_type(node, distro)
+    program = program or read_gazebo_program(node, library_type, run) or read_rviz(node, run)
+    library_type = "" if program is not None else library_type
     return NodeKnowledge(node, program, library_type, launch_files)
 
 
 def _find_library_type(node: LaunchedNode, distro: str) -> str:
     """Return the type of the library that ships which a node runs: known by its package and its plug-in or executable."""
-    if not node.package:
-        return ""
-    program = "plugin" if node.plugin else "executable"
-    for name, entry in load_shipped_component_types(distro).items():
-        facts = entry.value.get("node") if isinstance(entry.value, MappingNode) else None
-        texts = {each.key: node_to_data(each.value) for each in facts} if isinstance(facts, MappingNode) else {}
-        if texts.get("package") == node.package and texts.get(program) == (node.plugin or node.executable):
-            return name
-    return ""
+    return next(iter(index_shipped_programs(distro).get((node.package, node.plugin or node.executable), ())), "")
 
 
 def _find_entry(workspace: WorkspaceFiles, folders: Sequence[Path], text: str) -> Path:

@@ -34,7 +34,10 @@ def observe_workspace(path: Path, options: ObservationOptions) -> ObservedRobot 
     workspace = join_workspace([path], options.arguments, options.environment, options.launch_files, options.distro)
     account, run = workspace.account, workspace.launched.run
     made = make_slices(SliceMaker(run), workspace.knowledge, workspace.files, account, workspace.distro)
-    named = {each.id: each for each in made.nodes if _has_known_name(each)}
+    # A program of which no sources tell that it is a node is none that the graph of a robot would have.
+    programs = {node.id for node in made.architecture.nodes.values() if node.is_program}
+    nodes_of_ros = [each for each in made.nodes if each.found is not None or each.id not in programs]
+    named = {each.id: each for each in nodes_of_ros if _has_known_name(each)}
     names = {node_id: made.architecture.nodes[node_id].full_name for node_id in named}
     counts = Counter(names[node_id] for node_id, each in named.items() if not each.variants)
     nodes = {names[node_id]: _observe_node(names[node_id], each, counts) for node_id, each in named.items()}
@@ -49,7 +52,7 @@ def observe_workspace(path: Path, options: ObservationOptions) -> ObservedRobot 
         "workspace",
         tuple(nodes.values()),
         endpoints,
-        unnamed_nodes=len(made.nodes) - len(named),
+        unnamed_nodes=len(nodes_of_ros) - len(named),
         unread=unread,
     )
 
@@ -75,6 +78,9 @@ def _observe_node(full_name: str, node: WrittenNode, counts: Mapping[str, int]) 
         max(counts[full_name], 1),
         {**plain, **given},
         has_known_uses=node.found is not None or (known is not None and bool(known.library_type)),
+        # What the library does not say of a program, nobody looked for: it may load plug-ins, or be asked by parameters.
+        has_all_uses=known is None
+        or (not known.library_type and (known.program is None or not known.program.strange_base)),
         is_conditional=bool(node.variants),
         at=at,
     )
@@ -92,7 +98,8 @@ def _observe_endpoint(full_name: str, node: WrittenNode, endpoint: Endpoint) -> 
         endpoint.name,
         endpoint.message,
         {} if found is None else _read_qos(found.qos, endpoint.use),
-        is_conditional=found is None or found.is_conditional,
+        is_conditional=found is None or found.is_conditional or bool(node.variants),
+        program_name=endpoint.program_name,
         at=at,
     )
 

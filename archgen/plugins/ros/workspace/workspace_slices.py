@@ -19,6 +19,7 @@ from archgen.plugins.ros.workspace.program_sources import WorkspaceFiles
 Comments = dict[tuple[str | int, ...], str]
 _VERBS = {"topic": "publishes", "service": "serves", "action": "serves"}
 _ONE_GROUP = "robot"
+_OTHER_GROUP = "others"
 
 
 @dataclass(frozen=True, slots=True)
@@ -31,24 +32,26 @@ class MadeSlices:
     architecture: Architecture
 
 
-def make_slices(
+def make_slices(  # noqa: PLR0913 - what is known, and how it is to stand there
     maker: SliceMaker,
     knowledge: Sequence[NodeKnowledge],
     workspace: WorkspaceFiles,
     account: ImportAccount,
     distro: str,
+    *,
+    group_by: str | None = None,
 ) -> MadeSlices:
     """Make the slices of what is known of the nodes."""
     sections = maker.make_sections([each.node for each in knowledge])
     by_id = {node_id: each for each in knowledge if (node_id := maker.find_node_id(each.node))}
-    groups = _choose_groups({node_id: each.node for node_id, each in by_id.items()}, workspace)
+    owners = CodeOwners(workspace.roots, account)
+    groups = _choose_groups({node_id: each.node for node_id, each in by_id.items()}, workspace, owners, group_by)
     writer = NodeWriter(account, distro)
     written = [
         each
         for node_id, data in sections.pop("nodes", {}).items()
         for each in writer.write_node(node_id, data, by_id[node_id], groups[node_id])
     ]
-    owners = CodeOwners(workspace.roots, account)
     used: set[str] = set()
     for each in written:
         package = workspace.packages.get(each.package)
@@ -79,7 +82,10 @@ def make_slices(
     variants, variant_comments = _make_variants(written, inputs, wiring)
     if variants:
         file = next(iter(slices), f"{_ONE_GROUP}.yaml")
-        slices[file] = {**slices.get(file, sections), "variants": variants}
+        rest = dict(slices.get(file, sections))
+        # What a variant changes is declared, also where nothing of it always runs.
+        others: dict[str, Any] = {each.group: {} for each in written if f"{each.group}.yaml" not in slices}
+        slices[file] = {"groups": {**rest.pop("groups", {}), **others}, **rest, "variants": variants}
         comments[file] = {**comments.get(file, {}), **variant_comments}
         account.count("variant", len(variants))
     return MadeSlices(slices, comments, written, architecture)
@@ -91,17 +97,23 @@ def _rename(node: WrittenNode, new_id: str) -> None:
         node.id, node.data["implements"] = new_id, f"{node.group}.{new_id}"
 
 
-def _choose_groups(launched: Mapping[str, LaunchedNode], workspace: WorkspaceFiles) -> dict[str, str]:
-    """Return the group of each node: by the folder of its package, else by its namespace, else one for all."""
-    folders, namespaces = {}, {}
+def _choose_groups(
+    launched: Mapping[str, LaunchedNode], workspace: WorkspaceFiles, owners: CodeOwners, group_by: str | None
+) -> dict[str, str]:
+    """Return the group of each node: as it was asked for, else by the folder of its package, by its namespace, or one for all."""
+    places: dict[str, dict[str, str]] = {each: {} for each in ("folder", "namespace", "package", "codeowners")}
     for node_id, node in launched.items():
         package = workspace.packages.get(node.package)
         parts = package.manifest_name.split("/") if package is not None else []
-        folders[node_id] = parts[0] if len(parts) > 2 else ""  # noqa: PLR2004 - folder, package, package.xml
-        namespaces[node_id] = node.namespace.strip("/").partition("/")[0]
-    for places in (folders, namespaces):
-        if len({place for place in places.values() if place}) > 1:
-            return {node_id: make_id(place or "others", "group") for node_id, place in places.items()}
+        named = owners.name_partners(package.manifest.folder) if package is not None else None
+        places["folder"][node_id] = parts[0] if len(parts) > 2 else ""  # noqa: PLR2004 - folder, package, package.xml
+        places["namespace"][node_id] = node.namespace.strip("/").partition("/")[0]
+        places["package"][node_id] = node.package
+        places["codeowners"][node_id] = (named if isinstance(named, str) else named[0]) if named else ""
+    fewest = 1 if group_by else 2
+    for way in (group_by,) if group_by else ("folder", "namespace"):
+        if len(set(filter(None, places[way].values()))) >= fewest:
+            return {node_id: make_id(place or _OTHER_GROUP, "group") for node_id, place in places[way].items()}
     return dict.fromkeys(launched, _ONE_GROUP)
 
 
@@ -157,16 +169,32 @@ def _make_variants(
             by_variant[variant].append(each)
     for (wanted, title), added in by_variant.items():
         name = make_unique_id(wanted, variants.keys())
-        inputs = wiring.wire([*usual, *added])
+        stopped = [each for each in usual if _runs_instead(each, added)]
+        running = [each for each in usual if each not in stopped]
+        inputs = wiring.wire([*running, *added])
         changes = _write_sections(added, inputs)
-        for node in usual:
+        for node in running:
             changed = {key: value for key, value in inputs[node.id].items() if usual_inputs[node.id].get(key) != value}
             if changed:
                 group = changes["groups"].setdefault(node.group, {"components": {}})
                 group["components"][node.id] = {"inputs": changed}
-        variants[name] = {"title": title, "changes": changes}
+        without = {"without": " ".join(f"{each.group}.{each.id}" for each in stopped)} if stopped else {}
+        variants[name] = {"title": title, **without, "changes": changes}
         comments |= _place_comments(added, {}, ("variants", name, "changes"))
     return variants, comments
+
+
+def _runs_instead(node: WrittenNode, others: Iterable[WrittenNode]) -> bool:
+    """Whether a node runs only where others do not: unless what they run if."""
+    contrary = {
+        condition.replace("if ", "unless ", 1)
+        if condition.startswith("if ")
+        else condition.replace("unless ", "if ", 1)
+        for other in others
+        if other.known is not None and not other.known.node.is_on
+        for condition in other.known.node.conditions
+    }
+    return node.known is not None and not contrary.isdisjoint(node.known.node.conditions)
 
 
 class _Wiring:
@@ -214,10 +242,13 @@ class _Wiring:
                     )
                 )
                 self.count += len(sources)
-                is_same = all(self._architecture.outputs[source].type == typed.get("type") for source in found)
+                # What a type of the library says otherwise is said, too.
+                is_same = "is" not in node.component and all(
+                    self._architecture.outputs[source].type == typed.get("type") for source in found
+                )
                 given: Any = sources[0] if len(sources) == 1 else sources
                 inputs[node.id][port] = given if is_same or not typed else FlowMapping({"from": given, **typed})
-            elif own is not None or (each.name is not None and not self._architecture.inputs[str(each.port)].optional):
+            elif own is not None or not self._architecture.inputs[str(each.port)].optional:
                 where = f"Nobody here {_VERBS[each.flow]} {each.name}" if each.name else "Its name is not known"
                 inputs[node.id].setdefault(port, FlowMapping({"external": where, **typed}))
         return inputs

@@ -8,7 +8,7 @@ The elements of a UML model as plain data, and ids that no two of them share.
 from __future__ import annotations
 
 import re
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from typing import Any
 
 from archgen.plugin.generating import make_id
@@ -21,11 +21,19 @@ TYPE_PREFIX = "type_."
 _USABLE_ID = re.compile(r"[^\s#<>&\"']{1,200}\Z")
 
 
-def make_tree(tag: str, kind: str = "", element_id: str = "", name: str = "", **attributes: str | None) -> UmlTree:
+def make_tree(
+    tag: str,
+    kind: str = "",
+    element_id: str = "",
+    name: str = "",
+    children: Iterable[UmlTree] = (),
+    /,
+    **attributes: str | None,
+) -> UmlTree:
     """Return an element. Attributes that are None are left out."""
     written = {"xmi:type": f"uml:{kind}" if kind else None, "xmi:id": element_id or None, "name": name or None}
     pairs = [[key, value] for key, value in {**written, **attributes}.items() if value is not None]
-    return {"tag": tag, "attributes": pairs, "text": "", "children": []}
+    return {"tag": tag, "attributes": pairs, "text": "", "children": list(children)}
 
 
 def make_text(tag: str, text: str) -> UmlTree:
@@ -78,13 +86,11 @@ def make_id_word(name: str) -> str:
 
 def make_comments(element_id: str, body: Mapping[str, Any]) -> list[UmlTree]:
     """Return the texts of an element as comments; the id says which is which."""
-    comments = []
-    for key in ("functionality", "description", "comment"):
-        if text := body.get(key):
-            comment = make_tree("ownedComment", "Comment", f"{element_id}.{key}", annotatedElement=element_id)
-            comment["children"].append(make_text("body", str(text)))
-            comments.append(comment)
-    return comments
+    return [
+        make_tree("ownedComment", "Comment", f"{element_id}.{key}", "", [text], annotatedElement=element_id)
+        for key in ("functionality", "description", "comment")
+        if (text := make_text("body", str(body.get(key) or "")))["text"]
+    ]
 
 
 _ARRAY = re.compile(r"\[(<=)?([0-9]*)\]\Z")
@@ -132,12 +138,18 @@ class UmlTypes:
     def add_choices(self, path: str, choices: list[str]) -> str:
         """Add an enumeration for the choices of a parameter, and return its id."""
         element_id = self._registry.claim(f"choices.{path}")
-        tree = make_tree("packagedElement", "Enumeration", element_id, path.rpartition(".")[2])
-        for choice in choices:
-            literal_id = self._registry.claim(f"literal.{path}.{make_id_word(choice)}")
-            tree["children"].append(make_tree("ownedLiteral", "EnumerationLiteral", literal_id, choice))
-        self._enumerations.append(tree)
+        literals = self._write_literals(path, choices)
+        self._enumerations.append(
+            make_tree("packagedElement", "Enumeration", element_id, path.rpartition(".")[2], literals)
+        )
         return element_id
+
+    def _write_literals(self, path: str, values: Iterable[object]) -> list[UmlTree]:
+        return [
+            make_tree("ownedLiteral", "EnumerationLiteral", self._registry.claim(f"literal.{path}.{word}"), str(value))
+            for value in values
+            for word in (make_id_word(str(value)),)
+        ]
 
     def write_types(self, *, only_used: bool) -> list[UmlTree]:
         """Return the elements of all types; with a selection those that are named."""
@@ -160,16 +172,13 @@ class UmlTypes:
             signature_id = self._registry.claim(f"signature.type.{make_id_word(name)}")
             signature, self.generic_ids = make_signature(signature_id, names, formal_ids)
             tree["children"].append(signature)
-        for value in body.get("values") or ():
-            literal_id = self._registry.claim(f"literal.{element_id}.{make_id_word(str(value))}")
-            tree["children"].append(make_tree("ownedLiteral", "EnumerationLiteral", literal_id, str(value)))
+        tree["children"] += self._write_literals(element_id, body.get("values") or ())
         for field_name, field in read_mapping(body.get("fields")).items():
             written = str(read_mapping(field).get("type") or "")
             field_id = self._registry.claim(f"field.{element_id}.{field_name}")
             element_type = self.refer(_ARRAY.sub("", written)) if written else None
-            attribute = make_tree("ownedAttribute", "Property", field_id, field_name, type=element_type)
-            attribute["children"] += make_comments(field_id, read_mapping(field))
-            attribute["children"] += self.write_bounds(field_id, written)
+            inner = make_comments(field_id, read_mapping(field)) + self.write_bounds(field_id, written)
+            attribute = make_tree("ownedAttribute", "Property", field_id, field_name, inner, type=element_type)
             tree["children"].append(attribute)
         self.generic_ids = {}
         return tree
@@ -202,8 +211,8 @@ def make_signature(
     )
     element_ids = {name: f"{formal_id}.element" for name, formal_id in zip(names, formal_ids, strict=True)}
     for formal_id, (name, element_id) in zip(formal_ids, element_ids.items(), strict=True):
-        formal = make_tree("ownedParameter", "ClassifierTemplateParameter", formal_id, parameteredElement=element_id)
-        words = {"templateParameter": formal_id}
-        formal["children"].append(make_tree("ownedParameteredElement", "Class", element_id, name, **words))
+        inner = [make_tree("ownedParameteredElement", "Class", element_id, name, templateParameter=formal_id)]
+        words = {"parameteredElement": element_id}
+        formal = make_tree("ownedParameter", "ClassifierTemplateParameter", formal_id, "", inner, **words)
         signature["children"].append(formal)
     return signature, element_ids

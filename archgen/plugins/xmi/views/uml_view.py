@@ -56,8 +56,8 @@ def _make_model(context: GenerationContext, packed: Mapping[str, Any]) -> UmlTre
     written_types = types.write_types(only_used=selected is not None)
     project = read_mapping(packed.get("project"))
     title = str(project.get("title") or title_from_id(str(project.get("id") or "model")))
-    model = make_tree("uml:Model", "", registry.claim("project"), title)
-    model["children"] += [
+    model_id = registry.claim("project")
+    children = [
         *_make_package(registry, "types", "Types", written_types),
         *_make_package(
             registry, "classes", "Component types", [*classes.values(), *components.templates.bound_classes]
@@ -66,14 +66,12 @@ def _make_model(context: GenerationContext, packed: Mapping[str, Any]) -> UmlTre
         *_make_package(registry, "interfaces", "Interfaces", wiring.relations),
         *_make_package(registry, "deployment", "Deployment", deployment),
     ]
-    return model
+    return make_tree("uml:Model", "", model_id, title, children)
 
 
 def _make_package(registry: IdRegistry, name: str, title: str, contents: list[UmlTree]) -> Iterator[UmlTree]:
     if contents:
-        package = make_tree("packagedElement", "Package", registry.claim(f"package.{name}"), title)
-        package["children"] += contents
-        yield package
+        yield make_tree("packagedElement", "Package", registry.claim(f"package.{name}"), title, contents)
 
 
 def _add_outer(selected: Collection[str]) -> frozenset[str]:
@@ -229,8 +227,10 @@ def _write_links(
         body = read_mapping(written.get(link.id))
         link_id = registry.claim(f"link.{link.id}", body.get("hints"))
         end_ids = [registry.claim(f"end.{link.id}.{number}") for number in range(1, len(ends) + 1)]
-        tree = make_tree("packagedElement", "CommunicationPath", link_id, link.title, memberEnd=" ".join(end_ids))
-        for end_id, target in zip(end_ids, ends, strict=True):
-            tree["children"].append(make_tree("ownedEnd", "Property", end_id, type=target, association=link_id))
-        trees.append(tree)
+        children = [
+            make_tree("ownedEnd", "Property", end_id, type=target, association=link_id)
+            for end_id, target in zip(end_ids, ends, strict=True)
+        ]
+        words = {"memberEnd": " ".join(end_ids)}
+        trees.append(make_tree("packagedElement", "CommunicationPath", link_id, link.title, children, **words))
     return trees

@@ -110,10 +110,11 @@ class UmlWiring:
     def _join(self, owner: str, first: PortPath, second: PortPath) -> None:
         """Write a connector between two ports inside of a composed component, or one of them its own."""
         connector_id = self._registry.claim(f"connector.{'.'.join(second)}")
-        connector = make_tree("ownedConnector", "Connector", connector_id)
-        for number, port in enumerate((first, second), 1):
-            role = self._components.port_ids[port]
-            connector["children"].append(make_tree("end", "ConnectorEnd", f"{connector_id}.end{number}", role=role))
+        ends = [
+            make_tree("end", "ConnectorEnd", f"{connector_id}.end{number}", role=self._components.port_ids[port])
+            for number, port in enumerate((first, second), 1)
+        ]
+        connector = make_tree("ownedConnector", "Connector", connector_id, "", ends)
         self.connectors.setdefault(owner, []).append(connector)
         # A connector says which way the data goes only where one of its ends does.
         if second in self._components.inputs:

@@ -17,6 +17,8 @@ const archgenExplorer = (function () {
     outputs: ["component", "name", "type", "note", "warning"],
     inputs: ["component", "name", "type", "note", "marks"],
     rims: ["shell", "isOutput", "name", "type", "note", "marks", "ports", "sources"],
+    activities: ["id", "node", "components", "waits", "responds", "why"],
+    steps: ["tail", "head", "isCall", "link", "waits", "responds", "why"],
     chains: ["address", "id", "title", "status", "words", "components", "nodes"],
     requirements: ["address", "id", "title", "components"],
     findings: ["kind", "element", "severity", "message"],
@@ -55,6 +57,8 @@ const archgenExplorer = (function () {
     addShells(model);
     for (const group of model.groups) group.kind = "group";
     for (const host of model.hosts) host.kind = "host";
+    // The lines between groups that the build has found: through which places between their ends they pass.
+    model.ways = new Map((tables.ways ?? []).map(([first, last, lanes]) => [[first, last].sort((a, b) => a - b).join(" "), { ends: [first, last], lanes }]));
     addFlows(model);
     addLinks(model);
     return model;
@@ -173,7 +177,7 @@ const archgenExplorer = (function () {
   function readComponentLevel(model, name) {
     const opens = name === "components";
     return { name, members: model.components, flows: model.flows, homes: model.groups, shells: opens ? model.shells : [],
-      homeOf: (each) => each.group, placeOf: (each) => orNull(each.place), homePlaceOf: (home) => orNull(home.place), opens };
+      homeOf: (each) => each.group, placeOf: (each) => orNull(each.place), homePlaceOf: (home) => orNull(home.place), opens, ways: model.ways };
   }
 
   // Nodes without a home get one of their own.
@@ -187,7 +191,7 @@ const archgenExplorer = (function () {
     return { name, members: model.nodes, flows: model.links, homes: isOpen ? [...homes, rest] : homes, shells: [],
       homeOf: (node) => (node[field] < 0 ? homes.length : node[field]),
       placeOf: (node) => orNull(byHost ? node.hostPlace : node.place),
-      homePlaceOf: (home) => orNull(byHost ? home.place : home.nodePlace), opens: true };
+      homePlaceOf: (home) => orNull(byHost ? home.place : home.nodePlace), opens: true, ways: new Map() };
   }
 
   // An element with properties and children: text is text, whatever it holds.

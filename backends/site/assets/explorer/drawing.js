@@ -107,13 +107,15 @@ archgenExplorer.makeDrawing = function (map, layers) {
   }
 
   function drawArrow(arrow) {
-    const count = arrow.flows.length;
+    const count = arrow.flows.length + (arrow.way && arrow.twin ? arrow.twin.flows.length : 0);
     const weight = count > 3 ? "many" : count > 1 ? "some" : "one";
     const [x, y] = arrow.stop, back = -arrow.direction;
-    const node = shape("g", { class: `arrow ${weight} ${arrow.style}${arrow.optional ? " optional" : ""}${arrow.made ? " made" : ""}`, "data-arrow": arrow.id },
+    const feedback = arrow.way && arrow.turn !== "loop" && back > 0 ? " feedback" : "";
+    const node = shape("g", { class: `arrow ${weight} ${arrow.style}${arrow.optional ? " optional" : ""}${arrow.made ? " made" : ""}${feedback}`, "data-arrow": arrow.id },
       shape("path", { class: "hit", d: arrow.path }), shape("path", { class: "way", d: arrow.path }),
       ...(arrow.style === "physical" ? [shape("path", { class: "core", d: arrow.path })] : []),
-      shape("path", { class: "head", d: `M${x} ${y}l${back * 8} -4v8z${arrow.medium ? `m${back * 9} -4v8h${back * 7}v-8z` : ""}` }));
+      shape("path", { class: "head", d: arrow.isUpright ? `M${x} ${y}l-4 ${back * 8}h8z` : `M${x} ${y}l${back * 8} -4v8z${arrow.medium ? `m${back * 9} -4v8h${back * 7}v-8z` : ""}` }),
+      ...(arrow.way && arrow.flows.length > 1 ? drawTexts([arrow.flows.length], `number ${back > 0 ? "right" : "left"}`, ...(arrow.isUpright ? [x + back * 7, y + back * 9 + 4] : [x + back * 11, y + 4]), 0) : []));
     const title = shape("title");
     title.textContent = arrow.tip;
     node.prepend(title);

@@ -4,6 +4,8 @@
 archgenExplorer.layOut = (function () {
   const BOX = { width: 178, height: 48, line: 16 };
   const OUTER = { gap: 34, channel: 120 };
+  const WAY_STEP = 13; // px between the ends of lines with numbers
+  const LANE_GAP = 15; // px between a line that passes a column and what stands beside it
   const PITCHES = [92, 160]; // px from one row of the closed map to the next: as far apart as a screen's height allows
   const HEIGHT_SHARE = 0.5;
   const INNER = { pitch: 76, gap: 26, channel: 92 };
@@ -47,9 +49,12 @@ archgenExplorer.layOut = (function () {
   }
 
   // Middles as near to the wished ones as can be, so far apart that nothing overlaps (pool adjacent violators).
-  function spread(wishes, heights, gap) {
+  function spread(wishes, boxes, gap) {
     const steps = [0];
-    for (let at = 1; at < wishes.length; at += 1) steps.push(steps[at - 1] + (heights[at - 1] + heights[at]) / 2 + gap);
+    for (let at = 1; at < wishes.length; at += 1) {
+      const [above, below] = [boxes[at - 1], boxes[at]];
+      steps.push(steps[at - 1] + (above.height + below.height) / 2 + (above.isLane || below.isLane ? LANE_GAP : gap));
+    }
     const blocks = [];
     wishes.forEach((wish, at) => {
       blocks.push([wish - steps[at], 1]);
@@ -73,7 +78,7 @@ archgenExplorer.layOut = (function () {
     const order = [...columns.keys()].sort((a, b) => a - b);
     order.forEach((number, at) => {
       const column = columns.get(number).sort((a, b) => a.place[1] - b.place[1]);
-      const middles = spread(column.map((box) => box.place[1] * pitch), column.map((box) => box.height), gap);
+      const middles = spread(column.map((box) => box.place[1] * pitch), column, gap);
       const width = Math.max(...column.map((box) => box.width));
       column.forEach((box, index) => {
         Object.assign(box, { x, y: middles[index] - box.height / 2, column: at, columnX: x, columnWidth: width });
@@ -82,7 +87,7 @@ archgenExplorer.layOut = (function () {
       });
       x += width + channel;
     });
-    return { width: Math.max(0, x - channel), top, bottom, columns: order.map((number) => columns.get(number)) };
+    return { width: Math.max(0, x - channel), top, bottom, columns: order.map((number) => columns.get(number).filter((box) => !box.isLane)) };
   }
 
   // What has no place of its own (what is folded, nodes without a home) stands below the last column.
@@ -122,6 +127,31 @@ archgenExplorer.layOut = (function () {
     return arrows.some(({ meeting: { tail, head } }) => tail.column === last && head.column === last);
   }
 
+  // What flows between two closed homes takes one line, in either direction, through the lanes that the build has found.
+  function findWays(scene, level) {
+    const ways = new Map(), closed = new Map();
+    for (const box of scene.boxes) if (level.isHome(box.element) && !box.open) closed.set(box.element.number, box);
+    // Whatever is shown or hidden: places stay.
+    for (const [key, { ends, lanes }] of level.ways) {
+      const [first, last] = ends.map((number) => closed.get(number));
+      if (first && last) ways.set(key, { first, last, arrows: [], lanes: lanes.map((lane) => ({ isLane: true, lane, width: 0, height: 0 })) });
+    }
+    for (const arrow of scene.arrows) {
+      const way = ways.get([arrow.tail, arrow.head].map((box) => closed.get(box.element?.number) === box ? box.element.number : -1).sort((a, b) => a - b).join(" "));
+      if (!way) continue;
+      arrow.way = way;
+      way.arrows.push(arrow);
+    }
+    // A box is as high as its side with most ends needs.
+    const counts = new Map();
+    for (const { first, last } of ways.values()) {
+      if (first.element.place?.[0] === last.element.place?.[0]) continue;
+      for (const [box, side] of [[first, 1], [last, 0]]) counts.set(box, Object.assign(counts.get(box) ?? [0, 0], { [side]: (counts.get(box)?.[side] ?? 0) + 1 }));
+    }
+    for (const [box, sides] of counts) box.height = Math.max(box.height, (Math.max(...sides) - 1) * WAY_STEP + 14);
+    return [...ways.values()];
+  }
+
   function findInside(scene) {
     const inside = new Map([[null, []]]), arrows = new Map();
     for (const box of scene.boxes) {
@@ -140,10 +170,10 @@ archgenExplorer.layOut = (function () {
 
   return Object.assign(function layOut(scene, level) {
     const { inside, arrows } = findInside(scene);
-    const placeIn = (boxes, placeOf, sizes) => {
+    const placeIn = (boxes, placeOf, sizes, passing = []) => {
       const places = boxes.map((box) => box.element && placeOf(box.element)).filter(Boolean);
       const below = findEnd(places);
-      return place(boxes, (box) => (box.element && placeOf(box.element)) || below, sizes(places, below[0]));
+      return place([...boxes, ...passing], (box) => box.lane ?? ((box.element && placeOf(box.element)) || below), sizes(places, below[0]));
     };
 
     // From the inside to the outside: a home is as large as what it holds.
@@ -171,8 +201,9 @@ archgenExplorer.layOut = (function () {
 
     const outer = inside.get(null);
     outer.filter((box) => box.open).forEach(sizeHome);
-    const size = placeIn(outer, level.homePlaceOf, (known, last) => ({ ...OUTER, pitch: choosePitch(known, last) }));
+    const lanes = findWays(scene, level).flatMap((way) => way.lanes);
+    const size = placeIn(outer, level.homePlaceOf, (known, last) => ({ ...OUTER, pitch: choosePitch(known, last) }), lanes);
     outer.filter((box) => box.open).forEach(moveInside);
     return { left: 0, right: size.width, top: size.top, bottom: size.bottom, columns: size.columns };
-  }, { measure, wrap, cut, BOX });
+  }, { measure, wrap, cut, BOX, WAY_STEP });
 })();

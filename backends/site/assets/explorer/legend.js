@@ -21,6 +21,7 @@ archgenExplorer.makeLegend = function (actions) {
     if (hasLit && has(({ side, head }) => side === "before" || (side === "" && head.picked))) rows.push(entry(sample("arrow lit before"), "feeds it"));
     if (hasLit && has(({ side, tail }) => side === "after" || (side === "" && tail.picked))) rows.push(entry(sample("arrow lit after"), "fed by it"));
     if (!hasLit && has(({ flows }) => flows.length > 3)) rows.push(entry(sample("arrow many"), "4 flows or more"));
+    if (has(({ way, turn, direction }) => way && turn !== "loop" && direction < 0)) rows.push(entry(sample("arrow one feedback"), "runs back; a number: flows that arrive"));
     if (has(({ optional }) => optional)) rows.push(entry(sample("arrow one optional"), "optional input"));
     if (has(({ made }) => made)) rows.push(entry(sample("arrow one made"), "joined by autoconnect"));
     if (has(({ style }) => style === "physical")) rows.push(entry(sample("arrow one physical"), "physical"));

@@ -14,7 +14,7 @@
   const map = shape("svg", { class: "map", role: "group", "aria-label": "Map. Arrow keys go from box to box, Enter shows details, question mark lists all keys." },
     layers.frames, layers.edges, layers.boxes, layers.lit, layers.labels);
   const stage = element("div", { className: "stage", tabIndex: -1 }, map);
-  let scene = null, bounds = null, level = null, choice = null, pickedArrow = null, drawnLevel = "", fitView = "", fitWidth = 0;
+  let scene = null, bounds = null, level = null, choice = null, pickedArrow = null, drawnLevel = "", closedWay = "", fitView = "", fitWidth = 0;
 
   const store = archgenExplorer.makeState((problems) => render(problems ?? []), begin);
   const { state } = store;
@@ -23,7 +23,8 @@
   const camera = archgenExplorer.makeCamera(stage, map, (view) => minimap.follow(view), ({ x, y, zoom }) => store.moved([x, y, zoom]));
   const minimap = archgenExplorer.makeMinimap(camera, stage);
   const drawing = archgenExplorer.makeDrawing(map, layers);
-  const panel = archgenExplorer.makePanel(model, root, actions);
+  const durations = archgenExplorer.makeDurations(model);
+  const panel = archgenExplorer.makePanel(model, root, actions, durations);
   const tools = archgenExplorer.makeTools(model, actions);
   const legend = archgenExplorer.makeLegend(actions);
   const list = archgenExplorer.makeList(actions);
@@ -150,12 +151,23 @@
     else if (picked && level.isHome(picked)) panel.showHome(picked, level.children.get(picked));
     else if (picked) panel.showMember(picked);
     else if (box?.kind === "fold") panel.showFold(box);
-    else panel.hide();
+    else if (!showDuration()) panel.hide();
+  }
+
+  // Of a selector that is a way (`a..b`), until it is closed: how long that takes.
+  function showDuration() {
+    const { ends } = choice.selection ?? {};
+    const way = ends && choice.lit && closedWay !== state.sel ? durations.measure(ends) : null;
+    if (way) panel.showWay(way, state.sel);
+    return Boolean(way);
   }
 
   // Elements of another kind than the level shows lead to theirs.
   function pick(each) {
-    if (!each) return store.change({ pick: "" });
+    if (!each) {
+      if (!state.pick) closedWay = state.sel;
+      return store.change({ pick: "" });
+    }
     const levelName = each.kind === "node" ? (state.level === "hosts" ? "hosts" : "nodes") : each.kind === "component" ? "components" : state.level;
     store.change({ pick: each.id, level: levelName, ...(levelName === state.level ? {} : { open: [], at: null }) });
   }
@@ -227,7 +239,9 @@
   function save(format) {
     const ground = getComputedStyle(stage).backgroundColor;
     const name = `explorer-${state.level}${state.sel ? "-" + state.sel.replace(/[^\p{L}\p{N}]+/gu, "_") : ""}`;
-    archgenExplorer.savePicture(Object.values(layers), bounds, ground, name, format).catch(() => sayOnce("The browser could not draw this picture: it may be too large for it."));
+    const MARGIN = 24;
+    const room = { left: bounds.left - MARGIN, top: bounds.top - MARGIN, right: bounds.right + MARGIN, bottom: bounds.bottom + MARGIN };
+    archgenSavePicture(Object.values(layers), room, ground, name, format).catch(() => sayOnce("The browser could not draw this picture: it may be too large for it."));
   }
 
   function sayOnce(text) {
@@ -245,6 +259,15 @@
   function start() {
     const hints = store.read();
     render(hints);
+    leavePage();
+  }
+  // What the page is without a script is not shown: it is there on paper alone.
+  function leavePage() {
+    const held = [...document.querySelectorAll("main > :not(.explorer, h1)")];
+    const paper = matchMedia("print");
+    const settle = () => (paper.matches ? document.querySelector("main").append(...held) : held.forEach((part) => part.remove()));
+    paper.addEventListener("change", settle);
+    settle();
   }
   // Widths of texts are those of the font that is drawn; where it does not come, those of the next best.
   Promise.race([document.fonts.load("600 13px Inter"), new Promise((done) => setTimeout(done, 400))]).then(start, start);

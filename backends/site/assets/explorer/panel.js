@@ -1,6 +1,6 @@
 // The panel at the side: what the chosen box or arrow is, its ports, chains, requirements and open points, and what can be done.
 "use strict";
-archgenExplorer.makePanel = function (model, root, actions) {
+archgenExplorer.makePanel = function (model, root, actions, durations) {
   const { element, shape, count } = archgenExplorer;
   const MAX_FLOWS = 60;
   const panel = element("aside", { className: "panel", ariaLabel: "Details", hidden: true });
@@ -147,16 +147,52 @@ archgenExplorer.makePanel = function (model, root, actions) {
       each.written?.length ? element("span", { className: "written muted" }, "Written in ", element("code", { textContent: each.written[0] })) : "");
   }
 
+  // --- ways: from one element to another, step by step on one scale ------------------------------------------------
+  const WAY_NOTE = "From what the first one takes in until the last one has acted on it. Of the ways of fewest steps this is the slowest; the terminal tells the others, the worst first: ";
+  const KINDS = [["link", "on the link"], ["sampling", "waits"], ["response", "responds"], ["unknown", "not known"]];
+
+  function showWay({ rows, gaps, sum, nodes }, title) {
+    const most = gaps ? `At least ${durations.format(sum, true)}` : `At most ${durations.format(sum)}`;
+    const unknown = gaps ? `Nobody knows how long: ${count(gaps, "time")} of it ${gaps > 1 ? "are" : "is"} not known, or only in part.` : "";
+    const kinds = new Set(rows.flatMap(({ parts }) => parts.map(([kind, , time]) => (time === null ? "unknown" : kind))));
+    open("way", title.replace("..", " → "), "",
+      element("section", { className: "waterfall duration" }, element("p", { className: "sum", textContent: most }), unknown ? element("p", { textContent: unknown }) : "",
+        element("p", { className: "kinds" }, KINDS.filter(([kind]) => kinds.has(kind)).map(([kind, words]) =>
+          element("span", {}, shape("svg", { width: 16, height: 10, "aria-hidden": "true" }, shape("rect", { class: kind, width: 16, height: 10 })), " " + words))),
+        drawSteps(rows, sum)),
+      element("section", {}, element("p", { className: "muted" }, WAY_NOTE, element("code", { textContent: `archgen timing --from ${nodes[0]} --to ${nodes.at(-1)} --worst 10` }))));
+  }
+
+  // What nobody knows has no length: a piece of a fixed one stands for it, and pushes what follows.
+  const GAP = 6; // per cent
+  function drawSteps(rows, sum) {
+    const gaps = rows.flatMap(({ parts }) => parts).filter(([, , time]) => time === null).length;
+    const gap = Math.min(GAP, 50 / Math.max(1, gaps)), scale = (100 - gap * gaps) / (sum || 1);
+    let at = 0;
+    return element("ol", { className: "steps" }, rows.map(({ activity, parts, why }) => {
+      const pieces = parts.map(([kind, , time]) => {
+        const width = time === null ? gap : durations.knownOf(time) * scale;
+        const piece = shape("rect", { class: time === null ? "unknown" : kind, x: at + "%", width: Math.max(width, 0.4) + "%", y: 4, height: 12 });
+        at += width;
+        return piece;
+      });
+      const words = parts.map(([, word, time]) => `${word} ${durations.describe(time)}`).join(", ");
+      return element("li", {}, link(model.nodes[activity.node].address, activity.id),
+        shape("svg", { class: "scale", width: "100%", height: 20, "aria-hidden": "true" }, ...pieces), element("p", { textContent: [words || "adds no time", why].filter(Boolean).join(" · ") }));
+    }));
+  }
+
   // --- arrows and folds -----------------------------------------------------------------------------------------
   function showArrow(arrow) {
     const members = arrow.flows[0].topic ? model.nodes : model.components;
     const endOf = (flow, side) => flow.ends?.[side] ?? members[flow[side]];
-    const rows = arrow.flows.slice(0, MAX_FLOWS).map((flow) => element("li", {},
+    const flows = [...arrow.flows, ...(arrow.way && arrow.twin ? arrow.twin.flows : [])];
+    const rows = flows.slice(0, MAX_FLOWS).map((flow) => element("li", {},
       element("div", {}, element("strong", { textContent: flow.label }), flow.warning ? [" ", tag(flow.warning)] : "", flow.optional ? [" ", tag("optional")] : "", flow.made ? [" ", tag("autoconnect")] : "", flow.style !== "data" ? [" ", tag(flow.style)] : "", flow.medium ? [" ", tag(flow.medium)] : ""),
       element("div", {}, pickButton(endOf(flow, "tail")), element("span", { className: "muted", textContent: flow.topic ? "" : ` · ${flow.style === "data" || flow.style === "physical" ? flow.from : flow.to}` }),
         " → ", pickButton(endOf(flow, "head")), element("span", { className: "muted", textContent: flow.topic ? "" : ` · ${flow.style === "data" || flow.style === "physical" ? flow.to : flow.from}` }))));
-    open(count(arrow.flows.length, "flow"), `${arrow.tailTitle} → ${arrow.headTitle}`, "",
-      section("What flows", arrow.flows.length > MAX_FLOWS ? `the first ${MAX_FLOWS}` : "", element("ul", { className: "flows" }, rows)));
+    open(count(flows.length, "flow"), `${arrow.tailTitle} ${flows.length > arrow.flows.length ? "↔" : "→"} ${arrow.headTitle}`, "",
+      section("What flows", flows.length > MAX_FLOWS ? `the first ${MAX_FLOWS}` : "", element("ul", { className: "flows" }, rows)));
   }
 
   function showFold(box) {
@@ -165,5 +201,5 @@ archgenExplorer.makePanel = function (model, root, actions) {
       element("ul", { className: "columns" }, rows), element("p", { className: "tools" }, tool("Show all boxes", () => actions.showAll())));
   }
 
-  return { panel, showMember, showShell, showHome, showArrow, showFold, hide: () => (panel.hidden = true) };
+  return { panel, showMember, showShell, showHome, showArrow, showFold, showWay, hide: () => (panel.hidden = true) };
 };

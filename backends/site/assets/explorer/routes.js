@@ -2,7 +2,9 @@
 // of the other end, so that lines leave and arrive without crossing.
 "use strict";
 archgenExplorer.routeArrows = (function () {
+  const { layOut } = archgenExplorer;
   const SPREAD = 9; // px between two ends on one side
+  const UNDER = 4; // px that what lies under a closed home stands out above it
   const MARGIN = 13; // px between a line and a box that it passes
   const EDGE = 4; // px between a line and the rim of the map
   const LOOP = 46; // px that a line between boxes of one column swings out
@@ -13,15 +15,18 @@ archgenExplorer.routeArrows = (function () {
   const right = (box) => box.x + box.width;
 
   // Which sides an arrow leaves and reaches: to the right where the other end is, else back to the left, else round.
-  function chooseSides(arrow, boxes) {
+  function chooseSides(arrow, boxes, columns) {
     const { tail, head } = arrow;
+    const { way } = arrow;
+    arrow.twin = way?.arrows.find((other) => other !== arrow) ?? null;
+    arrow.isUpright = Boolean(way) && tail.column === head.column && Math.abs(columns[tail.column].indexOf(tail) - columns[head.column].indexOf(head)) === 1;
     arrow.turn = right(tail) <= head.x ? "forward" : right(head) <= tail.x ? "back" : "loop";
     // Columns are level at the left: where something wide stands between, the way round is there.
     const isLeft = arrow.turn === "loop" && isBlocked(arrow, boxes);
     arrow.tailSide = arrow.turn === "back" || isLeft ? "left" : "right";
     arrow.headSide = arrow.turn === "forward" || isLeft ? "left" : "right";
     // Back past whole columns: round the outside of the map, or below what is in the same home, where it crosses no box.
-    arrow.isOutside = arrow.turn === "back" && arrow.meeting.tail.column - arrow.meeting.head.column > 1;
+    arrow.isOutside = !way && arrow.turn === "back" && arrow.meeting.tail.column - arrow.meeting.head.column > 1;
   }
 
   // Whether a box stands in the way of a line that swings out to the right of two boxes, one above the other.
@@ -45,6 +50,9 @@ archgenExplorer.routeArrows = (function () {
     return frames;
   }
 
+  // The lane that a line takes next from one of its ends.
+  const nextOf = ({ way }, box) => (way ? (box === way.first ? way.lanes[0] : way.lanes.at(-1)) : undefined);
+
   function spreadEnds(arrows) {
     const sides = new Map();
     const add = (box, side, arrow, end, other) => {
@@ -53,16 +61,19 @@ archgenExplorer.routeArrows = (function () {
       sides.get(key).push({ box, side, arrow, end, other });
     };
     for (const arrow of arrows) {
-      add(arrow.tail, arrow.tailSide, arrow, "start", arrow.head);
-      add(arrow.head, arrow.headSide, arrow, "stop", arrow.tail);
+      // Both directions of one line have their ends in common, and an upright one has none at a side.
+      if (arrow.isUpright || (arrow.way && arrow.way.arrows[0] !== arrow)) continue;
+      add(arrow.tail, arrow.tailSide, arrow, "start", nextOf(arrow, arrow.tail) ?? arrow.head);
+      add(arrow.head, arrow.headSide, arrow, "stop", nextOf(arrow, arrow.head) ?? arrow.tail);
     }
     for (const ends of sides.values()) {
       // What comes from below all boxes ends lowest.
       ends.sort((a, b) => a.arrow.isOutside - b.arrow.isOutside || middle(a.other) - middle(b.other) || (a.arrow.id < b.arrow.id ? -1 : 1));
       const { box } = ends[0];
-      const step = Math.min(SPREAD, (box.height - 14) / Math.max(1, ends.length - 1));
+      const step = Math.min(ends.some(({ arrow }) => arrow.way) ? layOut.WAY_STEP : SPREAD, (box.height - 14) / Math.max(1, ends.length - 1));
       ends.forEach(({ arrow, end, side }, at) => {
         arrow[end] = [side === "left" ? box.x : right(box), middle(box) + (at - (ends.length - 1) / 2) * step];
+        if (arrow.way && arrow.twin) arrow.twin[end === "start" ? "stop" : "start"] = arrow[end];
       });
     }
   }
@@ -162,6 +173,25 @@ archgenExplorer.routeArrows = (function () {
     return path;
   }
 
+  // The line between two closed homes: through its lanes, or straight to the next box of the column.
+  function routeWay(arrow) {
+    const { way, tail, head } = arrow;
+    const isForth = tail === way.first;
+    if (arrow.isUpright) {
+      const [x, down] = [tail.x + tail.width / 2, tail.y < head.y];
+      // A closed home has the rim of another one above it.
+      [arrow.start, arrow.stop] = down ? [[x, tail.y + tail.height], [x, head.y - UNDER]] : [[x, tail.y - UNDER], [x, head.y + head.height]];
+      arrow.direction = down ? 1 : -1;
+      arrow.points = [arrow.start, arrow.stop];
+      return `M${num(x)} ${num(arrow.start[1])}L${num(x)} ${num(arrow.stop[1])}`;
+    }
+    arrow.direction = isForth ? 1 : -1;
+    const lanes = way.lanes.flatMap(({ columnX, columnWidth, y }) => [[columnX, y], [columnX + columnWidth, y]]);
+    arrow.points = [arrow.start, ...(isForth ? lanes : lanes.reverse()), arrow.stop];
+    return arrow.points.slice(1).reduce((path, to, at) => path + (at % 2 ? `L${num(to[0])} ${num(to[1])}` : curve(arrow.points[at], to)),
+      `M${num(arrow.start[0])} ${num(arrow.start[1])}`);
+  }
+
   // A line through points, level or upright from one to the next, with round corners.
   function roundCorners(points, radius) {
     const length = ([x1, y1], [x2, y2]) => Math.abs(x2 - x1) + Math.abs(y2 - y1);
@@ -228,11 +258,13 @@ archgenExplorer.routeArrows = (function () {
   return function routeArrows(scene, bounds) {
     const arrows = scene.arrows;
     const used = new Map();
-    for (const arrow of arrows) chooseSides(arrow, scene.boxes);
+    for (const arrow of arrows) if (arrow.way) arrow.way.arrows = arrow.way.arrows.filter((each) => arrows.includes(each));
+    for (const arrow of arrows) chooseSides(arrow, scene.boxes, bounds.columns);
     spreadEnds(arrows);
     routeOutside(arrows, bounds);
     for (const arrow of arrows) {
-      if (!arrow.isOutside) arrow.path = drawPath(arrow, scene, bounds, used);
+      if (arrow.isUpright || (arrow.way && arrow.turn !== "loop")) arrow.path = routeWay(arrow);
+      else if (!arrow.isOutside) arrow.path = drawPath(arrow, scene, bounds, used);
       arrow.labelAt = placeLabel(arrow);
     }
   };

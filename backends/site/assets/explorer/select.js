@@ -187,10 +187,19 @@ archgenExplorer.makeSelector = function (model) {
     return addOtherLevel(hitOf(way, [], { elements }));
   }
 
+  // Both ends of a way: between nodes where both are nodes.
+  function readEnds(first, last) {
+    const onlyNodes = first.onlyNodes && last.onlyNodes;
+    return { first: { ...addOtherLevel(first), onlyNodes }, last: { ...addOtherLevel(last), onlyNodes } };
+  }
+
   function evaluateWord(word, problems) {
     const limit = (steps) => (steps === ALL_STEPS ? Infinity : steps);
     let hit = evaluateAtom(word.atom, problems);
-    if (word.rangeEnd) return findWays(hit, evaluateAtom(word.rangeEnd, problems));
+    if (word.rangeEnd) {
+      const last = evaluateAtom(word.rangeEnd, problems);
+      return { ...findWays(hit, last), ends: readEnds(hit, last) };
+    }
     if (word.before || word.after) hit = addNeighbours(hit, limit(word.before), limit(word.after));
     return addOtherLevel(hit);
   }
@@ -206,7 +215,7 @@ archgenExplorer.makeSelector = function (model) {
       const own = model.nodes[at].components;
       if (own.some((each) => refusedComponents.has(each)) && !own.some((each) => components.has(each))) nodes.delete(at);
     }
-    return { components, nodes, elements: wanted.flatMap((hit) => hit.elements) };
+    return { components, nodes, elements: wanted.flatMap((hit) => hit.elements), ends: wanted.length === 1 ? wanted[0].ends : undefined };
   }
 
   return function select(text) {

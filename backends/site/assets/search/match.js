@@ -9,6 +9,9 @@ const archgenSearch = (function () {
     chain: 6, partner: 6, page: 5, chapter: 4, port: 2, field: 2, connection: 1 };
   const FEW = 8; // With fewer exact results, words with one wrong letter are looked for as well.
   const LONGEST = 60; // Longer words are compared as they are: the pattern of all their mistakes grows with the square.
+  // Words of questions, left out where others stand beside them: "who reads the odometry" asks for the odometry.
+  const QUESTION_WORDS = new Set(("a an and are at by does do for from give gives has have how i in into is it my of on or read reads send sends " +
+    "run runs takes the to use uses what when where which who whom whose why with").split(" "));
   const MOST_NEAR = 12; // More words than that no longer help to find what was meant.
 
   const kinds = new Map(); // kind -> { kind, weight, lines, folded, places, texts }
@@ -112,7 +115,9 @@ const archgenSearch = (function () {
   // --- a whole query --------------------------------------------------------------------------------------------
   function readQuery(query) {
     const terms = [];
-    for (const piece of query.split(/\s+/)) {
+    const pieces = query.split(/\s+/);
+    const said = pieces.filter((piece) => piece && !QUESTION_WORDS.has(fold(piece)));
+    for (const piece of said.length ? said : pieces) {
       const small = fold(piece);
       if (small.includes(":") && [...selectors].some((key) => key.startsWith(small))) {
         terms.push({ text: small, selector: true, near: [] });

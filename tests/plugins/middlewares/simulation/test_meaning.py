@@ -5,6 +5,8 @@ from __future__ import annotations
 import re
 from pathlib import Path
 
+import pytest
+
 from tests.plugins.middlewares.simulation.simulated_workspaces import generate, run_python
 
 COUNTING = """\
@@ -103,6 +105,7 @@ def test_what_makes_a_component_active(tmp_path: Path) -> None:
         assert ["".join(each) for each in sent] == expected, timing
 
 
+@pytest.mark.slow
 def test_messages_that_go_round_are_told(tmp_path: Path) -> None:
     trace = run_project(
         tmp_path,

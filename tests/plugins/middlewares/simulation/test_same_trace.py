@@ -29,7 +29,7 @@ def test_the_cleaning_robot(tmp_path: Path) -> None:
     for line in (
         (
             '430000000 > cleaning.localization.pose_fusion.p {"header":{"stamp":{"sec":0,"nanosec":0},"frame_id":""},'
-            '"pose":{"position":{"x":1e+300,"y":-0.0,"z":NaN},"orientation":{"x":0.0,"y":0.0,"z":0.0,"w":0.0}}}'
+            '"pose":{"position":{"x":1e+300,"y":-0.0,"z":NaN},"orientation":{"x":0.0,"y":0.0,"z":0.0,"w":1.0}}}'
         ),
         '150000000 < cleaning.localization.gps.signals "second\\n"',
         '500000001 > cleaning.left_arm.shoulder.torque "left_shoulder turns"',

@@ -19,7 +19,15 @@ EXCESS = "steps that archgen follows: what comes later is not read whole"
 
 
 @pytest.mark.parametrize(
-    "line", ["s = [*s, *s]", "s = (*s, *s)", "s = {*s, *s}", "s += s", "s.extend(s)", "s = list(map(str, [*s, *s]))"]
+    "line",
+    [
+        "s = [*s, *s]",
+        "s = (*s, *s)",
+        "s = {*s, *s}",
+        "s += s",
+        pytest.param("s.extend(s)", marks=pytest.mark.slow),
+        "s = list(map(str, [*s, *s]))",
+    ],
 )
 def test_a_list_that_doubles_in_every_line_is_not_followed_for_ever(line: str, tmp_path: Path) -> None:
     tracemalloc.start()
@@ -69,6 +77,7 @@ def _write_loop(count: int) -> str:
     )
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("write", "name"), [(_write_nodes, "x.launch.xml"), (_write_loop, "x.launch.py")])
 def test_steps_and_calls_grow_with_the_nodes_and_no_faster(
     write: Callable[[int], str], name: str, tmp_path: Path

@@ -215,6 +215,8 @@ def test_three_forms_say_the_same(form: str, tmp_path: Path) -> None:
         ("'abc'[1:]", "bc"),
         ("os.path.join('a', 'b', 'c.x').replace('/', '_').replace('.', '_')", "a_b_c_x"),
         ("os.environ.get('ROBOT', 'r2')", "r2"),
+        ("os.getenv('ROBOT', default='r2')", "r2"),
+        ("os.getenv(key='ROBOT', default='r2')", "r2"),
         ("PythonExpression([\"'big' if \", LaunchConfiguration('x'), \" > 3 else 'small'\"])", "big"),
         ("[n for n in ['a', 'b', 'c'] if n != 'a'][0]", "b"),
         ("(lambda name: name + '_node')('x')", "x_node"),
@@ -222,6 +224,12 @@ def test_three_forms_say_the_same(form: str, tmp_path: Path) -> None:
         ("['n', PythonExpression([\"1 + int('\", LaunchConfiguration('x'), \"') + int(2.7)\"])]", "n8"),
         ("['n', PythonExpression([\"int(' 12345678901234567 ')\"])]", "n12345678901234567"),
         ("['n_', EqualsSubstitution(LaunchConfiguration('x'), '5')]", "n_true"),
+        ("PythonExpression([\"'A\", LaunchConfiguration('x'), \"'.lower()\"])", "a5"),
+        ("PythonExpression([f\"{ {'5': 'five'} }['\", LaunchConfiguration('x'), \"']\"])", "five"),
+        ("PythonExpression([\"'in' if '\", LaunchConfiguration('x'), \"' in ['4', '5'] else 'out'\"])", "in"),
+        ("PythonExpression(\"'a' if '' else 'b' if '$(find-pkg-share p)' == 3 or True else 'c'\")", "b"),
+        ("str(Path('a', 'b/c', 'd')).replace('/', '_')", "a_b_c_d"),
+        ("Path('a', 'b').__str__().replace('/', '_')", "a_b"),
     ],
 )
 def test_texts_are_put_together_as_python_does(expression: str, expected: str, tmp_path: Path) -> None:
@@ -683,3 +691,54 @@ def test_what_a_file_lacks_only_where_it_runs_alone_is_not_told(tmp_path: Path) 
     assert [each.split(":")[1] for each in alone] == [" arg", " include", " node"]
     whole = read_launch([tmp_path])
     assert (list(nodes_of(whole)), messages_of(whole)) == (["b", "a"], alone[2:])
+
+
+def test_a_computed_word_keeps_its_place_and_constants_of_math_are_known(tmp_path: Path) -> None:
+    """R21: an option without its value would be another command line."""
+    body = """
+import math
+from launch.actions import ExecuteProcess
+return LaunchDescription([
+    ExecuteProcess(cmd=["tilt", "--pitch", str(math.pi / 2), "--at", find_place()]),
+    ExecuteProcess(cmd=[find_tool(), "--pitch"]),
+    Node(package="p", executable="e", name="n", arguments=["--yaw", str(-math.tau), "--map", find_map(), "--end"]),
+    Node(package="p", executable="e", name="m", arguments=find_words()),
+])
+"""
+    text = f"{PYTHON_HEAD}\ndef generate_launch_description():\n{textwrap.indent(body, '    ')}\n"
+    imported = read_launch([write_files(tmp_path, robot__launch__py=text)], {})
+    nodes = nodes_of(imported)
+    assert nodes["tilt"]["command"] == ["tilt", "--pitch", "1.5707963267948966", "--at", "$(computed find_place())"]
+    assert nodes["n"]["arguments"] == ["--yaw", "-6.283185307179586", "--map", "$(computed find_map())", "--end"]
+    assert "arguments" not in nodes["m"]
+    assert [each.message.split("`")[1] for each in imported.notes] == [
+        *("find_place()", "find_tool()", "find_map()", "find_words()")
+    ]
+
+
+def test_the_priority_and_cores_of_a_process_are_those_of_its_node(tmp_path: Path) -> None:
+    """Also as launch files by archgen say them; in front of a container and what is none of both is told."""
+    prefixes = {
+        "plain": "chrt -f 40",
+        "made": "sudo -u bot -- /opt/ws/lib/r/run_scheduled chrt -f 60 taskset -c 2,4-5 --",
+        "one": "taskset -c 3",
+        "gdb": "chrt -f 7 gdb --args",
+    }
+    nodes = "\n".join(
+        f'<node pkg="p" exec="{name}" name="{name}" launch-prefix="{prefix}"/>' for name, prefix in prefixes.items()
+    )
+    box = '<node_container pkg="rclcpp_components" exec="component_container" name="box" namespace="" launch-prefix="chrt -f 5"/>'
+    (tmp_path / "r.launch.xml").write_text(f"<launch>\n{nodes}\n{box}\n</launch>\n", encoding="utf-8")
+    imported = read_launch([tmp_path / "r.launch.xml"])
+    (sections,) = imported.slices.values()
+    assert {name: node.get("timing") for name, node in sections["nodes"].items()} == {
+        "plain": {"priority": 40},
+        "made": {"priority": 60, "cores": [2, 4, 5]},
+        "one": {"core": 3},
+        "gdb": {"priority": 7},
+    }
+    told = [each for each in messages_of(imported) if "what runs it" in each]
+    assert told == [
+        "not taken: node:5: what runs it is left out: `gdb --args`",
+        "not taken: node_container:6: what runs it is left out: `chrt -f 5`",
+    ]

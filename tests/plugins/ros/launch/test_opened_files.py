@@ -252,6 +252,60 @@ return LaunchDescription([
     assert names == computed
 
 
+def test_what_is_written_over_a_file_goes_through_an_include(tmp_path: Path) -> None:
+    """R7: as Nav2 does it: a file with rewrites is handed on as an argument, and more is written over it there."""
+    outer = """
+from nav2_common.launch import RewrittenYaml
+path = os.path.join(get_package_share_directory("bot"), "config", "main.yaml")
+written = RewrittenYaml(source_file=path, root_key="", param_rewrites={"rate": LaunchConfiguration("rate")}, convert_types=True)
+return LaunchDescription([
+    DeclareLaunchArgument("rate", default_value="7.5"),
+    IncludeLaunchDescription(PythonLaunchDescriptionSource(os.path.join(get_package_share_directory("bot"), "launch", "inner.launch.py")),
+                             launch_arguments={"params_file": written, "rate": "1.0"}.items()),
+])
+"""
+    inner = """
+from nav2_common.launch import RewrittenYaml
+written = RewrittenYaml(source_file=LaunchConfiguration("params_file"), param_rewrites={"on": "true"}, convert_types=True)
+return LaunchDescription([
+    DeclareLaunchArgument("params_file", default_value="none"),
+    Node(package="p", executable="e", name="n", parameters=[written]),
+    Node(package="p", executable="e", name="m", parameters=[LaunchConfiguration("params_file")]),
+])
+"""
+    outer_text, inner_text = (
+        f"{PYTHON_HEAD}\ndef generate_launch_description():\n{textwrap.indent(each, '    ')}\n"
+        for each in (outer, inner)
+    )
+    files = {
+        "package__xml": MANIFEST.format("bot"),
+        "config___main__yaml": "/**:\n  ros__parameters: {deep: {rate: 5.0, on: false}}\n",
+        "launch___inner__launch__py": inner_text,
+    }
+    nodes = nodes_of(read_launch([write_files(tmp_path, launch___robot__launch__py=outer_text, **files)], {}))
+    assert {name: (each["parameters"], each["parameter_files"]) for name, each in nodes.items()} == {
+        "n": ({"deep": {"rate": 7.5, "on": True}}, ["$(find-pkg-share bot)/config/main.yaml"]),
+        "m": ({"deep": {"rate": 7.5, "on": False}}, ["$(find-pkg-share bot)/config/main.yaml"]),
+    }
+
+
+def test_a_file_that_is_for_other_nodes_is_told(tmp_path: Path) -> None:
+    """R8: a name that is misspelt in a parameter file costs days, and ROS says nothing of it."""
+    xml = """<launch><node pkg="p" exec="e" name="lidar_driver"><param from="$(find-pkg-share bot)/config/main.yaml"/></node>
+    <node pkg="p" exec="e" name="good"><param from="$(find-pkg-share bot)/config/good.yaml"/></node>
+    <node pkg="p" exec="nameless"><param from="$(find-pkg-share bot)/config/main.yaml"/></node></launch>"""
+    files = {
+        "package__xml": MANIFEST.format("bot"),
+        "config___main__yaml": "lidar_drivr:\n  ros__parameters: {rate: 1}\n/a/b:\n  ros__parameters: {rate: 1}\n",
+        "config___good__yaml": "/**/good:\n  ros__parameters: {rate: 1}\n",
+    }
+    imported = read_launch([write_files(tmp_path, launch___robot__launch__xml=xml, **files)], {})
+    assert [note.message.replace(f"{tmp_path.name}/", "") for note in imported.notes] == [
+        "`config/main.yaml` says nothing to `/lidar_driver`, but to `/lidar_drivr`, `/a/b`",
+        "`config/main.yaml` says nothing to nameless, whose own name the launch file does not say, but to `/lidar_drivr`, `/a/b`",
+    ]
+
+
 def test_files_that_are_opened_in_a_loop_take_bounded_time(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(launch_parameter_values, "MAX_OPENED_BYTES", 10 * len(VALUES))
     body = f"""

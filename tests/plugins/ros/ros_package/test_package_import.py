@@ -258,7 +258,8 @@ def test_packages_in_packages_and_names_that_look_like_tests(tmp_path: Path) -> 
     if(x)
     set(name b)
     endif()
-    add_executable(latest_map m.cpp)
+    add_executable(newest m.cpp)
+    set_target_properties(newest PROPERTIES FOLDER x OUTPUT_NAME latest_map)
     add_executable(map_test m.cpp)
     add_executable(gridTest m.cpp)
     add_executable(${name} m.cpp)
@@ -270,7 +271,7 @@ def test_packages_in_packages_and_names_that_look_like_tests(tmp_path: Path) -> 
     assert list(sections["types"]) == ["Of outer"]
     assert list(sections["component_types"]) == ["latest_map", "a"]
     assert [f"{note.kind}:{note.span.line}: {note.message}" for note in imported.notes if note.kind != "depend"] == [
-        "add_executable:8: the name of a program is computed: `${name}`",
+        "add_executable:9: the name of a program is computed: `${name}`",
         "console_scripts:2: which programs there are is computed",
         "console_scripts:2: `x` is no entry point",
     ]

@@ -278,6 +278,18 @@ def test_types_fit_the_nodes_that_implement_them(tmp_path: Path) -> None:
     assert check_slices(imported, tmp_path / "project", "jazzy") == []
 
 
+def test_equal_nodes_have_keys_alike_and_one_type(tmp_path: Path) -> None:
+    def tell(name: str, topic: str) -> str:
+        return f"{name}\n  Publishers:\n    {topic}: sensor_msgs/msg/LaserScan\n"
+
+    front, rear = tell("/robot1/front/lidar", "/robot1/front/scan"), tell("/robot1/rear/lidar", "/robot1/rear/scan")
+    sections = read_text(front + rear, tmp_path, 2).slices
+    assert list(sections["running_nodes.yaml"]["nodes"]) == ["robot1_front_lidar", "robot1_rear_lidar"]
+    assert list(sections["running_types.yaml"]["component_types"]) == ["lidar"]
+    sections = read_text(front + tell("/robot1/rear/lidar", "/cloud"), tmp_path, 2).slices
+    assert list(sections["running_types.yaml"]["component_types"]) == ["robot1_front_lidar", "robot1_rear_lidar"]
+
+
 def test_topics_of_endpoints_are_found_by_node_and_type(tmp_path: Path) -> None:
     text = "\n".join(line for line in ROS_2.splitlines() if not line.startswith("$"))
     imported = read_text(text, tmp_path, 2)

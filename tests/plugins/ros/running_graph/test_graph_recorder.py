@@ -97,6 +97,13 @@ def test_a_graph_of_ros_2_is_written_and_read(tmp_path: Path, capsys: pytest.Cap
     graph_recorder.write_graph(node, names, lines.append)
     values = {"rate": 12.5, "on": True, "filter.low": [1, 2], "far": float("inf"), "none": None, "urdf": "x" * 20_000}
     graph_recorder.write_parameters("/front/lidar", values, lines.append)
+    process = tmp_path / "12"
+    process.mkdir()
+    command = ["lidar", "--ros-args", "-r", "__node:=lidar", "-r", "__ns:=/front", "-r", "scan:=/scan", ""]
+    (process / "cmdline").write_bytes("\0".join(command).encode())
+    (tmp_path / "13").mkdir()
+    graph_recorder.write_state("/front/lidar", SimpleNamespace(label="inactive", id=2), lines.append)
+    graph_recorder.write_host("arm-pc", names, graph_recorder.list_commands(tmp_path), lines.append)
     assert capsys.readouterr().err == "/base: it ended\n"
     file = tmp_path / "graph.txt"
     file.write_text("\n".join(lines) + "\n", encoding="utf-8")
@@ -105,6 +112,10 @@ def test_a_graph_of_ros_2_is_written_and_read(tmp_path: Path, capsys: pytest.Cap
     assert {each.full_name: each.count for each in robot.nodes} == {"/base": 2, "/front/lidar": 1}
     lidar = next(each for each in robot.nodes if each.full_name == "/front/lidar")
     assert lidar.parameters == {"rate": 12.5, "on": True, "filter.low": [1, 2], "far": float("inf")}
+    assert {each.full_name: (each.state, each.host) for each in robot.nodes} == {
+        "/base": (None, None),
+        "/front/lidar": ("inactive", "arm-pc"),
+    }
     scan = next(each for each in robot.endpoints if each.name == "/scan")
     assert (scan.use, scan.message, scan.qos["reliability"], str(scan.qos["deadline"])) == (
         "publishes",

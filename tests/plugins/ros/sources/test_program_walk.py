@@ -264,7 +264,7 @@ RCLCPP_SOURCE = """
       create_service<Trigger>(STOP, [](auto request, auto response) {});
       helper_ = std::make_unique<Helper>(shared_from_this());
       add<std_msgs::msg::String>("left");
-      image_.subscribe(this, "image", rmw_qos_profile_sensor_data);
+      image_.subscribe(reinterpret_cast<rclcpp::Node*>(this), "image", rmw_qos_profile_sensor_data);
       listener_ = std::make_shared<tf2_ros::TransformListener>(*buffer_);
       rclcpp_action::create_server<nav2_msgs::action::Spin>(this, "spin", a, b, c);
       auto qos = rclcpp::QoS(rclcpp::KeepLast(5)).transient_local().reliable();
@@ -433,3 +433,326 @@ def test_hostile_sources(tmp_path: Path, name: str) -> None:
     unread = [reason for file in index.list_read_files() for _, _, reason in file.unread]
     assert name == "sums.py" or bool(unread) == (name in {"brackets.py", "python2.py", "null.py", "deep.py"}), unread
     assert all(each.name is not None for node in made.nodes for each in node.endpoints)
+
+
+def test_format_strings_of_newer_pythons_are_read(tmp_path: Path) -> None:
+    """Since Python 3.12 there may be lines and the same quotes in their braces; nothing else of the file moves."""
+    made, index = walk(
+        tmp_path,
+        {
+            "newer.py": """
+                import rclpy  # it's "newer"
+                from rclpy.node import Node
+                from std_msgs.msg import String
+                class Newer(Node):
+                    '''Its "doc".'''
+                    def __init__(self):
+                        names = {"a": "here"}
+                        super().__init__(f'newer{
+                            1}')
+                        self.create_publisher(String, f"/{names["a"]}/{{x}}"[:5], 10)
+                        self.create_publisher(String, rf"/there{"}"[1:]}", 10)
+                        print(f"{1.5:>{len("abc")}.1f}" 'it''s', "{")
+                        self.create_subscription(String, "/now", print, 10)
+                rclpy.init()
+                Newer()
+            """
+        },
+    )
+    assert [file.unread for file in index.list_read_files()] == [[]]
+    assert tell(made)[0] == "node newer1"
+    assert [each.span.line for each in made.nodes[0].endpoints] == [11, 12, 14]
+    assert "subscribes topic /now std_msgs/msg/String" in tell(made)
+
+
+def test_a_method_called_as_one_of_rclcpp_is_the_programs_own(tmp_path: Path) -> None:
+    """As lights of the TurtleBot 4 are made: in a map, by a method that takes the node."""
+    made, _ = walk(
+        tmp_path,
+        {
+            "main.cpp": """
+            #include <rclcpp/rclcpp.hpp>
+            class Led {
+            public:
+              void create_subscription(rclcpp::Node::SharedPtr nh, std::string topic) {
+                sub_ = nh->create_subscription<std_msgs::msg::Int32>(topic, 10, std::bind(&Led::take, this));
+              }
+            };
+            class Leds : public rclcpp::Node {
+            public:
+              Leds() : Node("leds") {
+                std::map<int, std::unique_ptr<Led>> leds_;
+                leds_[POWER]->create_subscription(shared_from_this(), "led/power");
+                leds_[WIFI]->create_subscription(shared_from_this(), "led/wifi");
+              }
+            };
+            int main() { rclcpp::spin(std::make_shared<Leds>()); }
+            """
+        },
+    )
+    assert tell(made) == [
+        "node leds",
+        "subscribes topic led/power std_msgs/msg/Int32",
+        "subscribes topic led/wifi std_msgs/msg/Int32",
+    ]
+
+
+def test_a_service_of_roscpp_is_that_of_its_request(tmp_path: Path) -> None:
+    made, _ = walk(
+        tmp_path,
+        {
+            "main.cpp": """
+            #include <ros/ros.h>
+            bool first(std_srvs::TriggerRequest& request, std_srvs::TriggerResponse& response) { return true; }
+            bool second(std_srvs::SetBool::Request& request, std_srvs::SetBool::Response& response) { return true; }
+            int main(int argc, char** argv) {
+              ros::init(argc, argv, "server");
+              ros::NodeHandle nh;
+              auto one = nh.advertiseService("one", first);
+              auto two = nh.advertiseService("two", &second);
+            }
+            """
+        },
+        is_ros_1=True,
+    )
+    assert tell(made)[1:] == ["serves service one std_srvs/srv/Trigger", "serves service two std_srvs/srv/SetBool"]
+
+
+def test_modules_beside_the_script_and_classes_in_classes(tmp_path: Path) -> None:
+    """A module in a folder imports another one as the script would; a class that is defined in another one is made by both names."""
+    made, _ = walk(
+        tmp_path,
+        {
+            "scripts/run.py": """
+                import rospy
+                from parts.lift import Lift
+                if __name__ == "__main__":
+                    rospy.init_node("lift")
+                    Lift()
+            """,
+            "scripts/parts/lift.py": """
+                import rospy
+                from std_msgs.msg import Int8
+                from parts.base import Base
+
+                class Lift(Base):
+                    def __init__(self):
+                        super().__init__()
+                        self.up = Lift.Axis("up")
+                        self.down = self.Axis("down")
+                        self.lost = Axis("lost")
+
+                    class Axis:
+                        def __init__(self, name):
+                            rospy.Subscriber(name, Int8, self.take)
+
+                        def take(self, message):
+                            pass
+            """,
+            "scripts/parts/base.py": """
+                import rospy
+                from std_msgs.msg import Int8
+
+                class Base:
+                    def __init__(self):
+                        rospy.Publisher("base", Int8, queue_size=1)
+            """,
+        },
+        is_ros_1=True,
+    )
+    assert tell(made) == [
+        "node lift",
+        "publishes topic base std_msgs/msg/Int8",
+        "subscribes topic up std_msgs/msg/Int8",
+        "subscribes topic down std_msgs/msg/Int8",
+    ]
+
+
+def test_other_middlewares_subscribe_too(tmp_path: Path) -> None:
+    """A client of MQTT is no node handle; one whose type nobody tells may be; actions of C++ have their type in brackets."""
+    made, _ = walk(
+        tmp_path,
+        {
+            "main.cpp": """
+            #include <ros/ros.h>
+            std::shared_ptr<mqtt::client> client;
+            actionlib::SimpleActionClient<mbf_msgs::ExePathAction>* action;
+            void take(const std_msgs::String& message) {}
+            int main(int argc, char** argv) {
+              ros::init(argc, argv, "link");
+              client = std::make_shared<mqtt::client>("tcp://here", "link");
+              client->subscribe("/far", 0);
+              action = new actionlib::SimpleActionClient<mbf_msgs::ExePathAction>("exe_path");
+              find_handle(1, 2)->subscribe("near", 0, take);
+            }
+            """
+        },
+        is_ros_1=True,
+    )
+    assert tell(made)[1:] == [
+        "calls action exe_path mbf_msgs/action/ExePath",
+        "subscribes topic *near std_msgs/msg/String (find_handle(1, 2))",
+    ]
+
+
+def test_texts_are_formatted_and_members_named(tmp_path: Path) -> None:
+    made, _ = walk(
+        tmp_path,
+        {
+            "main.cpp": """
+            #include <rclcpp/rclcpp.hpp>
+            struct Pair { rclcpp::PublisherBase::SharedPtr out, in; };
+            class Link : public rclcpp::Node {
+            public:
+              Link() : Node("link") {
+                std::string const name = declare_parameter("name", "left");
+                pairs_.emplace(name, Pair{
+                  .out = create_publisher<std_msgs::msg::Int8>(std::format("{}/out", name), 1),
+                  .in = create_subscription<std_msgs::msg::Int8>(fmt::format("{}/in{:d}", name, 3), 1, take),
+                });
+              }
+            };
+            int main() { rclcpp::spin(std::make_shared<Link>()); }
+            """
+        },
+    )
+    assert tell(made) == [
+        "node link",
+        "publishes topic left/out std_msgs/msg/Int8",
+        'subscribes topic * std_msgs/msg/Int8 (fmt::format("{}/in{:d}", name, 3))',
+    ]
+
+
+def test_comprehensions_are_loops(tmp_path: Path) -> None:
+    """With conditions, in one another, as tables and generators; over what is not known they are walked through once."""
+    made, _ = walk(
+        tmp_path,
+        {
+            "main.py": """
+                import rospy
+                from std_msgs.msg import Int8
+                from std_srvs.srv import Trigger
+
+                def publish(name):
+                    return rospy.Publisher(name, Int8, queue_size=1)
+
+                rospy.init_node("many")
+                sides = ["left", "right", ""]
+                publishers = [publish(side) for side in sides if side != ""]
+                both = [publish(f"{side}/{part}") for side in sides if side for part in ("a", "b")]
+                clients = {side: rospy.ServiceProxy(f"{side}/go", Trigger) for side in {"up": 1}}
+                all_of = tuple(publish(name + "/x") for name in {each + "1": each for each in sides[:1] or ["up"]})
+                some = [publish(f"some/{each}") for each in open("/x")]
+                few = [publish(f"few/{each}") for each in ("a", "b") if open("/x")]
+                for each in few:
+                    publish("late")
+            """
+        },
+        is_ros_1=True,
+    )
+    assert tell(made)[1:] == [
+        "publishes topic left std_msgs/msg/Int8",
+        "publishes topic right std_msgs/msg/Int8",
+        "publishes topic left/a std_msgs/msg/Int8",
+        "publishes topic left/b std_msgs/msg/Int8",
+        "publishes topic right/a std_msgs/msg/Int8",
+        "publishes topic right/b std_msgs/msg/Int8",
+        "calls service up/go std_srvs/srv/Trigger",
+        'publishes topic */x? std_msgs/msg/Int8 ({each + "1": each for each in sides[:1] or ["up"]})',
+        'publishes topic some/*? std_msgs/msg/Int8 (open("/x"))',
+        "publishes topic few/a? std_msgs/msg/Int8",
+        "publishes topic few/b? std_msgs/msg/Int8",
+        "publishes topic late? std_msgs/msg/Int8",
+    ]
+
+
+def test_classes_that_a_base_lists_are_made(tmp_path: Path) -> None:
+    """A node that makes all subclasses of a base, as they were imported, and sets itself into them by name."""
+    made, _ = walk(
+        tmp_path,
+        {
+            "my_robot/main.py": """
+                import rclpy
+                from rclpy.node import Node
+                from my_robot.part import Part
+                from my_robot.parts import *
+
+                def list_all(base):
+                    return base.__subclasses__() + [deep for each in base.__subclasses__() for deep in list_all(each)]
+
+                class Robot(Node):
+                    def __init__(self):
+                        super().__init__("robot")
+                        self.__parts = [each() for each in list_all(Part)]
+                        for part in self.__parts:
+                            part.robot = self
+                            self.__setattr__(part.name, part)
+                            part.start()
+                        self.arm.raise_it()
+
+                def main():
+                    rclpy.spin(Robot())
+            """,
+            "my_robot/part.py": """
+                class Part:
+                    def __init__(self, name):
+                        self.name = name
+                    def start(self):
+                        pass
+            """,
+            "my_robot/parts/__init__.py": "from my_robot.parts.arm import Arm\n",
+            "my_robot/parts/arm.py": """
+                from std_msgs.msg import Int8
+                from my_robot.part import Part
+
+                class Arm(Part):
+                    def __init__(self):
+                        super().__init__("arm")
+                    def raise_it(self):
+                        self.robot.create_publisher(Int8, "up", 10)
+
+                class Hand(Arm):
+                    def start(self):
+                        self.robot.create_subscription(Int8, "grip", print, 10)
+            """,
+            "my_robot/other.py": """
+                from my_robot.part import Part
+                class Other(Part):
+                    def start(self):
+                        self.robot.create_publisher(None, "never", 10)
+            """,
+        },
+        "main",
+    )
+    assert tell(made) == [
+        "node robot",
+        "subscribes topic grip std_msgs/msg/Int8",
+        "publishes topic up std_msgs/msg/Int8",
+    ]
+
+
+@pytest.mark.parametrize("is_ros_1", [False, True])
+def test_packed_images_have_topics_of_their_own(is_ros_1: bool, tmp_path: Path) -> None:  # noqa: FBT001 - a case
+    body = """
+        #include <image_transport/image_transport.hpp>
+        int main(int argc, char** argv) {
+          auto node = std::make_shared<rclcpp::Node>("view");
+          image_transport::create_subscription(node.get(), "left", take, "compressed", rmw_qos_profile_sensor_data);
+          image_transport::create_subscription(node.get(), "right", take, "raw");
+        }
+    """
+    ros_1 = """
+        #include <image_transport/image_transport.h>
+        int main(int argc, char** argv) {
+          ros::init(argc, argv, "view");
+          ros::NodeHandle nh;
+          image_transport::ImageTransport it(nh);
+          it.subscribe("left", 1, take, image_transport::TransportHints("compressed"));
+          it.subscribe("right", 1, take);
+        }
+    """
+    made, _ = walk(tmp_path, {"main.cpp": ros_1 if is_ros_1 else body}, is_ros_1=is_ros_1)
+    assert tell(made)[1:] == [
+        "subscribes topic left/compressed sensor_msgs/msg/CompressedImage",
+        "subscribes topic right sensor_msgs/msg/Image",
+    ]

@@ -215,6 +215,55 @@ def test_nodes_off_by_default_are_variants(run: Run) -> None:
     assert "viewer" in run("list", "-C", "other", "--of", "nodes").out
 
 
+def test_a_variant_stops_what_runs_only_without_it(workspace: Path, run: Run) -> None:
+    """One program, started in one way if an argument is true and in another unless it is; what the library cannot say stays open."""
+    launch = workspace / "src/my_driver/launch/two.launch.xml"
+    launch.parent.mkdir()
+    launch.write_text(
+        """<launch><arg name="fuse" default="false"/>
+        <node pkg="my_driver" exec="driver" name="plain" unless="$(var fuse)"/>
+        <node pkg="my_driver" exec="driver" name="fused" if="$(var fuse)"/>
+        <node pkg="topic_tools" exec="relay" name="relay" args="a b"/>
+        <node pkg="robot_state_publisher" exec="robot_state_publisher" name="states" args="robot.urdf"/></launch>"""
+    )
+    done = run(
+        "import", "workspace", "src", "--launch", "my_driver/two.launch.xml", "--distro", "humble", "-o", "robot"
+    )
+    assert done.status == 0, done.err
+
+    def list_nodes(*words: str) -> set[str]:
+        return {line.split()[0] for line in run("list", "-C", "robot", *words, "--of", "nodes").out.splitlines()[1:]}
+
+    assert list_nodes() - {"nodes"} >= {"plain", "relay", "states"}
+    assert "fused" not in list_nodes()
+    assert "fused" in list_nodes("--variant", "fuse")
+    assert "plain" not in list_nodes("--variant", "fuse")
+    assert "is: ros.topic_relay" not in Path("robot/robot.yaml").read_text()
+    assert "warning" not in run("check", "robot").out
+
+
+def test_groups_are_made_by_what_is_asked_for(workspace: Path, run: Run) -> None:
+    """What nobody owns, or lies in no namespace, is in a group of its own; a later import leaves people's groups as they are."""
+    (workspace / "src/CODEOWNERS").write_text("/my_driver/ @acme/drivers\n", encoding="utf-8")
+    expected = {
+        "package": {"my_driver", "my_filter", "robot_localization", "slam_toolbox"},
+        "codeowners": {"drivers", "others"},
+        "namespace": {"front", "others"},
+    }
+    for way, groups in expected.items():
+        done = run("import", "workspace", "src", "--distro", "humble", "--group-by", way, "-o", way)
+        assert done.status == 0, done.err
+        found = {line.split()[0] for line in run("list", "-C", way, "--of", "groups").out.splitlines()[1:]}
+        assert (way, found) == (way, groups)
+        assert run("check", way).status == 0
+    again = run("import", "workspace", "src", "--distro", "humble", "--merge", "-o", "codeowners")
+    assert again.status == 0, again.err
+    assert "others" in run("list", "-C", "codeowners", "--of", "groups").out
+    assert (
+        "--group-by does not go with package" in run("import", "package", "src", "--group-by", "folder", "-o", "x").err
+    )
+
+
 @pytest.mark.usefixtures("workspace")
 def test_environment_is_given(run: Run) -> None:
     """R9: variables of the environment are what `--env` says; what is none is refused."""
@@ -311,7 +360,7 @@ def test_without_the_extra_cpp_is_unread_and_said(run: Run, monkeypatch: pytest.
     assert "sources in C++ are not read, those of `my_filter::Filter` for one" in done.out
     assert "= help: `pip install 'archgen[sources]'` installs what reads them" in done.out
     assert (
-        "  filter:  # what it says to ROS is not known: no sources, no type of the library"
+        "  filter:  # its name, and what it says to ROS, are not known: no sources, no type of the library"
         in Path("robot/robot.yaml").read_text()
     )
 
@@ -336,8 +385,9 @@ ROS_1 = {
     "my_base/CMakeLists.txt": """
         project(my_base)
         file(GLOB SRC src/*.cpp)
-        foreach(name motor)
+        foreach(name motor_program)
           add_executable(${name} ${SRC})
+          set_target_properties(${name} PROPERTIES OUTPUT_NAME "motor")
         endforeach()
         catkin_install_python(PROGRAMS scripts/drive.py DESTINATION bin)
     """,
@@ -414,3 +464,257 @@ def test_a_computed_remap_leaves_the_name_unknown(run: Run) -> None:
         in text
     )
     assert "odometry: {}" in text
+
+
+def test_what_an_input_of_the_library_is_called_may_not_be_known(
+    tmp_path: Path, run: Run, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """From Jazzy on a rectifying node finds `camera_info` beside its images, wherever a remap brings these."""
+    monkeypatch.chdir(tmp_path)
+    launch = """
+        from launch import LaunchDescription
+        from launch_ros.actions import Node
+
+        def generate_launch_description():
+            return LaunchDescription([
+                Node(package="image_proc", executable="rectify_node", name="it", remappings=[("image", "front/image_raw")]),
+            ])
+    """
+    write_workspace(Path("src"), {"my_camera/launch/camera.launch.py": launch})
+    for distro, told in (("humble", "Nobody here publishes /camera_info"), ("jazzy", "Its name is not known")):
+        assert run("import", "workspace", "src", "--distro", distro, "-o", distro).status == 0
+        assert f"camera_info: {{external: {told}}}" in Path(f"{distro}/robot.yaml").read_text()
+        assert "warning" not in run("check", distro).out
+
+
+def test_a_workspace_newer_than_its_distribution_defines_its_messages(workspace: Path, run: Run) -> None:
+    """As the main line of Nav2: a message that the distribution has not is the workspace's own, one that it has is not written again."""
+    for name, text in {
+        "nav2_msgs/package.xml": "<package><name>nav2_msgs</name><version>1.0.0</version><description>d</description></package>",
+        "nav2_msgs/srv/Later.srv": "int32 a\n---\nbool ok\n",
+        "nav2_msgs/msg/Costmap.msg": "std_msgs/Header header\n",
+        "later/package.xml": "<package><name>later</name><version>1.0.0</version><description>d</description></package>",
+        "later/setup.py": "setup(name='later', entry_points={'console_scripts': ['later = later.node:main']})",
+        "later/later/__init__.py": "",
+        "later/later/node.py": """
+import rclpy
+from rclpy.node import Node
+from nav2_msgs.msg import Costmap
+from nav2_msgs.srv import Later
+def main():
+    rclpy.init()
+    node = Node("later")
+    node.create_service(Later, "later", print)
+    node.create_publisher(Costmap, "costmap", 10)
+    rclpy.spin(node)
+""",
+        "later/launch/later.launch.xml": '<launch><node pkg="later" exec="later"/></launch>',
+    }.items():
+        (workspace / "src" / name).parent.mkdir(parents=True, exist_ok=True)
+        (workspace / "src" / name).write_text(text)
+    done = run("import", "workspace", "src", "--launch", "later/later.launch.xml", "--distro", "humble", "-o", "robot")
+    assert done.status == 0, done.err
+    text = Path("robot/messages.yaml").read_text(encoding="utf-8")
+    assert ("nav2_msgs/srv/Later" in text, "Costmap" in text) == (True, False)
+    assert "unknown-message" not in run("check", "robot").out
+
+
+def test_scripts_of_ros_1_beside_the_modules_are_programs(
+    tmp_path: Path, run: Run, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """As Duckietown has them: `rosrun` finds whatever lies in a package."""
+    monkeypatch.chdir(tmp_path)
+    package = tmp_path / "src/lane"
+    (package / "src").mkdir(parents=True)
+    (package / "launch").mkdir()
+    (package / "package.xml").write_text(
+        "<package format='2'><name>lane</name><version>1.0.0</version><description>d</description>"
+        "<buildtool_depend>catkin</buildtool_depend></package>"
+    )
+    (package / "CMakeLists.txt").write_text("find_package(catkin REQUIRED)\ncatkin_package()\n")
+    (package / "launch/lane.launch").write_text('<launch><node pkg="lane" type="lane_node.py" name="lane"/></launch>')
+    (package / "src/lane_node.py").write_text(
+        "import rospy\nfrom std_msgs.msg import String\nif __name__ == '__main__':\n    rospy.init_node('x')\n"
+        "    rospy.Publisher('~pose', String, queue_size=1)\n    rospy.spin()\n"
+    )
+    done = run("import", "workspace", "src", "-o", "robot")
+    assert done.status == 0, done.err
+    assert "1 node with sources" in done.out
+    assert "publishes /lane/pose" in " ".join(run("show", "-C", "robot", "lane").out.split())
+
+
+SPEED = """
+import rclpy
+from rclpy.node import Node
+from std_msgs.msg import Bool, Int8, Int16, Int32
+class Speed(Node):
+    def __init__(self):
+        super().__init__("speed")
+        self.create_publisher(Int8, self.declare_parameter("first", "default_first").value, 10)
+        self.create_publisher(Int16, self.declare_parameter("second", "default_second").value, 10)
+        self.create_publisher(Int32, "fixed", 10)
+        if self.declare_parameter("debug", False).value:
+            self.create_publisher(Bool, "debug", 10)
+def main():
+    rclpy.init()
+    rclpy.spin(Speed())
+main()
+"""
+
+
+@pytest.mark.parametrize(
+    ("parameters", "names"),
+    [
+        ('[{"first": "a"}]', ["/a", "/default_second", "/fixed"]),
+        ('[{"first": "a"}, "/somewhere/else.yaml"]', ["/a", "/fixed", "/debug"]),
+        ('[open("/x").read(), {"first": "a"}]', ["/a", "/fixed", "/debug"]),
+        ('[{"first": open("/x").read()}]', ["/default_second", "/fixed"]),
+        ('[{"first": LaunchConfiguration("not_given")}]', ["/default_second", "/fixed"]),
+        ('[{"first": EnvironmentVariable("NOT_GIVEN")}, {"debug": True}]', ["/default_second", "/fixed", "/debug"]),
+    ],
+)
+def test_what_a_parameter_names_is_unknown_where_its_value_is(
+    parameters: str, names: list[str], tmp_path: Path, run: Run, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """The program's own default is not taken for the value of a file that nobody can read, nor of an argument without one."""
+    monkeypatch.chdir(tmp_path)
+    launch = f"""
+        from launch import LaunchDescription
+        from launch.substitutions import EnvironmentVariable, LaunchConfiguration
+        from launch_ros.actions import Node
+
+        def generate_launch_description():
+            return LaunchDescription([Node(package="drive", executable="speed", parameters={parameters})])
+    """
+    files = {"launch/drive.launch.py": launch, "drive/__init__.py": "", "drive/speed.py": SPEED}
+    files["setup.py"] = "setup(entry_points={'console_scripts': ['speed = drive.speed:main']})"
+    write_workspace(Path("src"), {f"drive/{name}": text for name, text in files.items()})
+    done = run("import", "workspace", "src", "--distro", "jazzy", "-o", "robot")
+    assert done.status == 0, done.err
+    published = re.findall(r"publishes (/\w+)", run("show", "-C", "robot", "speed").out)
+    assert published == names
+    # A module that calls its own entry point is one node all the same.
+    assert len(run("list", "-C", "robot", "--of", "nodes").out.splitlines()) == 2  # a heading and a node
+
+
+@pytest.mark.parametrize("shared", ["", '<node pkg="joy" exec="joy_node" name="both" namespace="both"/>'])
+def test_groups_may_stand_in_variants_alone(
+    shared: str, tmp_path: Path, run: Run, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Two launch files that have no node in common, or one: a group that only one of them changes is declared."""
+    monkeypatch.chdir(tmp_path)
+    nodes = {
+        name: f'<launch><node pkg="joy" exec="joy_node" name="{name}" namespace="{name}"/>{shared}</launch>'
+        for name in ("left", "base")
+    }
+    write_workspace(Path("src"), {f"both/launch/{name}.launch.xml": text for name, text in nodes.items()})
+    options = [word for name in nodes for word in ("--launch", f"both/{name}.launch.xml")]
+    done = run("import", "workspace", "src", *options, "--distro", "jazzy", "-o", "robot")
+    assert done.status == 0, done.err
+    assert run("check", "robot").status == 0
+    assert "left" in run("list", "-C", "robot", "--variant", "left", "--of", "nodes").out
+    # `base` is the project itself.
+    assert "base" in run("list", "-C", "robot", "--variant", "base_variant", "--of", "nodes").out
+
+
+@pytest.mark.parametrize(("distro", "stamped"), [("jazzy", "True"), ("kilted", "False")])
+def test_velocities_have_a_time_where_a_parameter_says_so(
+    distro: str, stamped: str, tmp_path: Path, run: Run, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    launch = f"""
+        from launch import LaunchDescription
+        from launch_ros.actions import Node
+
+        def generate_launch_description():
+            return LaunchDescription([
+                Node(package="nav2_velocity_smoother", executable="velocity_smoother", name="velocity_smoother",
+                     parameters=[{{"enable_stamped_cmd_vel": {stamped}}}], remappings=[("cmd_vel_smoothed", "/out")]),
+                Node(package="twist_mux", executable="twist_mux", name="twist_mux",
+                     parameters=[{{"use_stamped": {stamped}, "topics.nav.topic": "/out"}}]),
+            ])
+    """
+    write_workspace(Path("src"), {"drive/launch/drive.launch.py": launch})
+    done = run("import", "workspace", "src", "--distro", distro, "-o", "robot")
+    assert done.status == 0, done.err
+    message = f"(geometry_msgs/msg/Twist{'Stamped' if stamped == 'True' else ''})"
+    shown = run("show", "-C", "robot", "velocity_smoother").out
+    assert f"publishes /out {message}" in shown
+    assert f"subscribes to /cmd_vel {message}" in shown
+    assert "type-mismatch" not in run("check", "robot").out
+
+
+def test_cmake_files_that_are_included_are_read(tmp_path: Path, run: Run, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Programs whose targets stand in another file; messages are written without the package inside of its namespace."""
+    pytest.importorskip("tree_sitter_cpp")
+    monkeypatch.chdir(tmp_path)
+    files = {
+        "CMakeLists.txt": """
+            project(mow)
+            find_package(rclcpp REQUIRED)
+            include(cmake/map.cmake)
+            include(Elsewhere)
+            mow_add_node(map_node src/*.cpp tf2 rclcpp)
+        """,
+        "cmake/map.cmake": """
+            macro(mow_add_node name sources)
+                file(GLOB FOUND ${sources})
+                mow_add_program(${name} ${FOUND})
+                ament_target_dependencies(${name} ${ARGN})
+            endmacro()
+            function(mow_add_program name)
+                add_executable(${name} ${ARGN})
+                mow_add_program(${name} ${ARGN})
+            endfunction()
+        """,
+        "src/map.cpp": """
+            #include <rclcpp/rclcpp.hpp>
+            namespace mow::map {
+            class Map : public rclcpp::Node {
+            public:
+              Map() : Node("map") {
+                create_publisher<msg::Area>("area", 10);
+                create_service<srv::Save>("save", [](const srv::Save::Request::SharedPtr a, srv::Save::Response::SharedPtr b) {});
+              }
+            };
+            }
+            class Plain : public rclcpp::Node {
+            public:
+              Plain() : Node("plain") { create_publisher<msg::Area>("plain_area", 10); }
+            };
+            int main() { rclcpp::spin(std::make_shared<mow::map::Map>()); rclcpp::spin(std::make_shared<Plain>()); }
+        """,
+        "msg/Area.msg": "float64 size\n",
+        "srv/Save.srv": "---\nbool ok\n",
+        "launch/map.launch.xml": '<launch><node pkg="mow" exec="map_node"/></launch>',
+    }
+    write_workspace(Path("src"), {f"mow/{name}": text for name, text in files.items()})
+    done = run("import", "workspace", "src", "--distro", "jazzy", "-o", "robot")
+    assert done.status == 0, done.err
+    shown = "".join(run("show", "-C", "robot", name).out for name in ("map_node", "plain"))
+    assert "publishes /area (mow/msg/Area)" in shown
+    assert "serves /save (mow/srv/Save)" in shown
+    assert "publishes /plain_area (?)" in shown
+
+
+def test_files_of_ros_1_are_filled_in_where_the_launch_file_says_so(
+    tmp_path: Path, run: Run, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    launch = """
+        <launch>
+          <arg name="robot" default="taluy"/>
+          <node pkg="robot_localization" type="ekf_localization_node" name="filled">
+            <rosparam file="$(find sea)/config/ekf.yaml" subst_value="true"/>
+          </node>
+          <node pkg="robot_localization" type="ekf_localization_node" name="plain">
+            <rosparam file="$(find sea)/config/ekf.yaml"/>
+          </node>
+        </launch>
+    """
+    files = {"sea/launch/sea.launch": launch, "sea/config/ekf.yaml": "odom0: /$(arg robot)/odom\nfrequency: 20\n"}
+    write_workspace(Path("src"), files, "catkin")
+    done = run("import", "workspace", "src", "-o", "robot")
+    assert done.status == 0, done.err
+    assert "subscribes to /taluy/odom (nav_msgs/msg/Odometry)" in run("show", "-C", "robot", "filled").out
+    assert "/odom (" not in run("show", "-C", "robot", "plain").out.replace("/odom0", "")

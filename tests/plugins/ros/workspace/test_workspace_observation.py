@@ -114,6 +114,46 @@ def test_what_may_be_a_computed_name_is_not_missed(run: Run) -> None:
     assert "14 of 15 endpoints seen; 1 cannot be told; 1 of its names unknown" in done.out
 
 
+def test_of_what_a_base_elsewhere_may_use_nothing_is_claimed(
+    tmp_path: Path, run: Run, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """A remap that fits nothing of a class itself may fit what its base makes; without such a base it is told."""
+    monkeypatch.chdir(tmp_path)
+    program = """
+        import enum
+        import rospy
+        from house.nodes import HouseNode
+        from std_msgs.msg import Bool
+        class Mode(enum.Enum):
+            ON = 1
+        class Guard(HouseNode):
+            def __init__(self):
+                super().__init__("guard")
+                rospy.Publisher("~safety", Bool, queue_size=1)
+                rospy.Subscriber("~stop", Bool, print)
+        Guard()
+    """
+    remap = '<remap from="~safty" to="/safety"/>'
+    launch = f'<launch><node pkg="my_guard" type="guard.py" name="guard">{remap}</node></launch>'
+    cmake = "project(my_guard)\ncatkin_install_python(PROGRAMS scripts/guard.py DESTINATION bin)\n"
+    files = {"launch/guard.launch": launch, "scripts/guard.py": program, "CMakeLists.txt": cmake}
+    for folder, text in (("open", program), ("closed", program.replace("(HouseNode)", ""))):
+        files["scripts/guard.py"] = text
+        write_workspace(Path(folder), {f"my_guard/{name}": each for name, each in files.items()}, "catkin")
+        assert run("import", "workspace", folder, "-o", f"{folder}_robot").status == 0
+        slice_file = Path(f"{folder}_robot/robot.yaml")
+        is_open = folder == "open"
+        assert (
+            "its base `house.nodes.HouseNode` lies elsewhere, and may use more" in slice_file.read_text()
+        ) == is_open
+        assert ("unused-remap" in run("check", f"{folder}_robot").out) != is_open
+        plant_in = Path(folder) / "my_guard/scripts/guard.py"
+        plant_in.write_text(plant_in.read_text().replace('rospy.Subscriber("~stop", Bool, print)', "pass"))
+        told = run("conform", f"{folder}_robot", "--against", folder).out
+        assert ("error[not-running]: `/guard` does not subscribe to `/guard/stop`" in told) != is_open
+        assert ("1 cannot be told" in told) == is_open
+
+
 @pytest.mark.usefixtures("robot")
 def test_launch_files_are_given_what_starts_them(run: Run) -> None:
     done = run("conform", "robot", "--against", "src", "--env", "MY_SCAN=/other")

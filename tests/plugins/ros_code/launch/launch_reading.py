@@ -29,12 +29,20 @@ _PROCESS = {
 _NODE = {"pkg": _TEXT, "exec": _TEXT, "name": _TEXT, "namespace": _TEXT, "args": _TEXT, **_PROCESS}
 ROS_2_TAGS: Mapping[str, Mapping[str, re.Pattern[str]]] = {
     "launch": {},
-    "arg": {"name": _TEXT, "default": _TEXT, "description": _TEXT},
+    "arg": {
+        "name": _TEXT,
+        "default": _TEXT,
+        "description": _TEXT,
+        "value": re.compile(r"\$\(var (prefix|scheduling)\)"),
+    },
+    "let": {"name": _TEXT, "value": _TEXT, "if": _TEXT, "unless": _TEXT},
     "include": {"file": _TEXT, "if": _TEXT},
     "node": _NODE,
     "node_container": _NODE,
     "load_composable_node": {"target": _TEXT},
     "composable_node": {"pkg": _TEXT, "plugin": _TEXT, "name": _TEXT, "namespace": _TEXT},
+    "extra_arg": {"name": _TEXT, "value": _TEXT},
+    "set_env": {"name": _TEXT, "value": _TEXT},
     "executable": {"cmd": _TEXT, "name": _TEXT, **_PROCESS},
     "env": {"name": _TEXT, "value": _TEXT},
     "remap": {"from": _TEXT, "to": _TEXT},
@@ -42,22 +50,28 @@ ROS_2_TAGS: Mapping[str, Mapping[str, re.Pattern[str]]] = {
 }
 ROS_2_REQUIRED: Mapping[str, frozenset[str]] = {
     "arg": frozenset({"name"}),
+    "let": frozenset({"name", "value"}),
     "include": frozenset({"file"}),
     "node": frozenset({"pkg", "exec"}),
     # Its namespace has no default in Python.
     "node_container": frozenset({"pkg", "exec", "name", "namespace"}),
     "load_composable_node": frozenset({"target"}),
     "composable_node": frozenset({"pkg", "plugin", "name"}),
+    "extra_arg": frozenset({"name", "value"}),
+    "set_env": frozenset({"name", "value"}),
     "executable": frozenset({"cmd"}),
     "env": frozenset({"name", "value"}),
     "remap": frozenset({"from", "to"}),
 }
 ROS_2_CHILDREN: Mapping[str, frozenset[str]] = {
-    "launch": frozenset({"arg", "include", "node", "node_container", "load_composable_node", "executable"}),
+    "launch": frozenset(
+        {"arg", "set_env", "let", "include", "node", "node_container", "load_composable_node", "executable"}
+    ),
+    "include": frozenset({"arg"}),
     "node": frozenset({"env", "remap", "param"}),
     "node_container": frozenset({"env", "remap", "param", "composable_node"}),
     "load_composable_node": frozenset({"composable_node"}),
-    "composable_node": frozenset({"remap", "param"}),
+    "composable_node": frozenset({"remap", "param", "extra_arg"}),
     "executable": frozenset({"env"}),
 }
 _NODE_1 = {
@@ -68,7 +82,16 @@ _NODE_1 = {
 }
 ROS_1_TAGS: Mapping[str, Mapping[str, re.Pattern[str]]] = {
     "launch": {},
-    "arg": {"name": _TEXT, "default": _TEXT, "doc": _TEXT},
+    "arg": {
+        "name": _TEXT,
+        "default": _TEXT,
+        "doc": _TEXT,
+        "if": _TEXT,
+        "unless": _TEXT,
+        "value": re.compile(
+            r"\$\(arg (prefix|scheduling)\)|(\$\(find \w+\)/scripts/run_scheduled (chrt|taskset) .* --)?"
+        ),
+    },
     "include": {"file": _TEXT, "if": _TEXT},
     "node": _NODE_1,
     "env": {"name": _TEXT, "value": _TEXT},
@@ -87,6 +110,7 @@ ROS_1_REQUIRED: Mapping[str, frozenset[str]] = {
 }
 ROS_1_CHILDREN: Mapping[str, frozenset[str]] = {
     "launch": frozenset({"arg", "include", "node", "param"}),
+    "include": frozenset({"arg"}),
     "node": frozenset({"env", "remap", "rosparam", "param"}),
 }
 _SUBSTITUTIONS_2 = {"find-pkg-share", "find-pkg-prefix", "env", "var", "command"}
@@ -119,7 +143,22 @@ def read_launch_file(file: Path, ros: int) -> ET.Element:
             read_text_2(value) if ros == 2 else read_text_1(value)
         for child in element:
             assert child.tag in children[element.tag], (element.tag, child.tag)
+    _take_prefix(root, "$(var prefix)" if ros == 2 else "$(arg prefix)")
     return root
+
+
+def _take_prefix(root: ET.Element, prefix: str) -> None:
+    """Read a launch file of the first robot: nothing stands in front of its names, all of which begin with `/`."""
+    (argument,) = (each for each in root if each.get("name") == "prefix")
+    assert argument.get("default") == ""
+    root.remove(argument)
+    for element in root.iter():
+        for child in element.findall("arg"):
+            if child.get("value") == prefix:
+                element.remove(child)
+        for name, value in element.attrib.items():
+            assert all(rest.startswith(("/", "'/")) for rest in value.split(prefix)[1:]), (name, value)
+            element.set(name, value.replace(prefix, ""))
 
 
 def read_text_2(value: str) -> list[tuple[str, str]]:

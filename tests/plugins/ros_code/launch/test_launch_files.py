@@ -207,7 +207,9 @@ def test_words_of_the_model_stay_words_in_ros_2(tmp_path: Path) -> None:
     assert read_parameters(package, "cam") == {
         "/front/cam": {"ros__parameters": {"rate": 20.0, "a.b": 1, "a.c": True, "text": "$(eval 1) \\ 'x'"}}
     }
-    assert read_parameters(package, "box") == {"/front/box": {"ros__parameters": {"thread_num": 2, "beat": 1}}}
+    assert read_parameters(package, "box") == {"/**/box": {"ros__parameters": {"thread_num": 2, "beat": 1}}}
+    # Who loads a node knows no other pattern.
+    assert read_parameters(package, "det") == {"/**": {"ros__parameters": {"use_sim_time": True, "size": 1}}}
 
 
 def read_parameters(package: Path, name: str) -> object:
@@ -312,8 +314,103 @@ def test_programs_do_not_see_what_roslaunch_adds(tmp_path: Path) -> None:
     assert done.stdout == "a b\n\n-n\n"
 
 
-@pytest.mark.parametrize(("ros", "distro", "name"), [(1, "noetic", "run_program"), (2, "", "set_states")])
+@pytest.mark.parametrize(
+    ("ros", "distro", "name"), [(1, "noetic", "run_program"), (2, "", "set_states"), (2, "scheduled", "run_scheduled")]
+)
 def test_shellcheck_finds_nothing(ros: int, distro: str, name: str, tmp_path: Path) -> None:
-    project = write_simple(tmp_path / "p", distro) if distro else EXAMPLES["courier"]
+    project = write_simple(tmp_path / "p", distro) if distro == "noetic" else EXAMPLES["courier"]
+    if distro == "scheduled":
+        project = tmp_path / "archgen.yaml"
+        project.write_text(SCHEDULED.replace("DISTRO", "jazzy"), encoding="utf-8")
     package, _ = make_launch_workspace(project, tmp_path / "ws", f"ros{ros}_launch")
     check_by_shellcheck(package / "scripts" / name)
+
+
+SCHEDULED = """\
+archgen: 1
+project: {id: bot, title: Bot}
+ros: {distro: DISTRO}
+groups: {g: {components: {a: A, b: B, c: C, d: D}}}
+hosts: {prefix: {cores: 4}, pc: {cores: 2}}
+containers: {box: {host: prefix}}
+nodes:
+  a: {implements: a, host: prefix, package: p, executable: a, timing: {rate: 10 Hz, wcet: 1 ms, priority: 20, cores: [0, 2]}}
+  b: {implements: b, host: prefix, package: p, executable: b, start: {user: robot}, timing: {rate: 10 Hz, wcet: 1 ms, priority: 20, cores: [0, 2]}}
+  c: {implements: c, container: box, package: p, plugin: "p::C", timing: {rate: 10 Hz, wcet: 1 ms, core: 3}}
+  d: {implements: d, host: pc, package: p, executable: d}
+"""
+
+
+@pytest.mark.parametrize(("ros", "distro"), [(1, "noetic"), (2, "jazzy")])
+def test_processes_start_with_the_priorities_and_cores_of_timing(ros: int, distro: str, tmp_path: Path) -> None:
+    project = tmp_path / "p"
+    project.mkdir()
+    (project / "archgen.yaml").write_text(SCHEDULED.replace("DISTRO", distro), encoding="utf-8")
+    package, _ = make_launch_workspace(project, tmp_path / "ws", f"ros{ros}_launch")
+    ending, variable = ("launch", "arg") if ros == 1 else ("launch.xml", "var")
+    launched = read_launch_file(package / "launch" / "hosts" / f"prefix.{ending}", ros)
+    values = [
+        (each.get("name"), each.get("value"), each.get("if"), each.get("unless"))
+        for each in launched.iter("arg" if ros == 1 else "let")
+        if each.get("value") is not None
+    ]
+    asked = f"$({variable} scheduling)"
+    script = (
+        "$(find bot_bringup)/scripts/run_scheduled"
+        if ros == 1
+        else "$(find-pkg-prefix bot_bringup)/lib/bot_bringup/run_scheduled"
+    )
+    assert values == [
+        ("chrt_f_20_taskset_c_0_2", f"{script} chrt -f 20 taskset -c 0,2 --", asked, None),
+        ("chrt_f_20_taskset_c_0_2", "", None, asked),
+        ("taskset_c_3", f"{script} taskset -c 3 --", asked, None),
+        ("taskset_c_3", "", None, asked),
+    ]
+    # Found in both spaces of catkin, whatever path `sudo` leaves.
+    assert "scripts/run_scheduled " in (package / "CMakeLists.txt").read_text(encoding="utf-8")
+    both = f"$({variable} chrt_f_20_taskset_c_0_2)"
+    prefixes = {each.get("name"): each.get("launch-prefix") for each in launched.iter() if each.get("launch-prefix")}
+    assert {name: str(value).strip() for name, value in prefixes.items()} == {
+        "a": both,
+        # The rights that count are those of the user whose process it is.
+        "b": f"sudo -n -E -u robot -- {both}",
+        "box": f"$({variable} taskset_c_3)",
+    }
+    # Above, one argument for all computers; a computer is not called as an argument that is there already.
+    system = ET.parse(package / "launch" / f"bot.{ending}").getroot()  # noqa: S314 - just generated
+    assert [each.get("name") for each in system.findall("arg")] == ["prefix", "host_prefix", "pc", "scheduling"]
+    passed = {str(each.get("file"))[-20:]: [arg.get("name") for arg in each] for each in system.findall("include")}
+    assert list(passed.values()) == [["prefix", "scheduling"], ["prefix"]]
+
+
+@pytest.mark.parametrize("allowed", ["chrt taskset", "taskset", ""])
+def test_what_a_computer_does_not_allow_is_left_out_in_words(allowed: str, tmp_path: Path) -> None:
+    (tmp_path / "p").mkdir()
+    (tmp_path / "p" / "archgen.yaml").write_text(SCHEDULED.replace("DISTRO", "jazzy"), encoding="utf-8")
+    package, _ = make_launch_workspace(tmp_path / "p", tmp_path / "ws", "ros2_launch")
+    for name in ("chrt", "taskset"):
+        body = 'shift 2\nUSED="${USED-}$0 " exec "$@"' if name in allowed else 'echo "$0: not permitted" >&2\nexit 1'
+        (tmp_path / name).write_text(f"#!/bin/sh\n{body}\n", encoding="utf-8")
+        (tmp_path / name).chmod(0o755)
+    done = subprocess.run(  # noqa: S603 - the script that was just generated
+        [
+            package / "scripts/run_scheduled",
+            *["chrt", "-f", "20", "taskset", "-c", "0,2", "--", "sh", "-c"],
+            'echo "$USED|$*"',
+            "sh",
+            "a b",
+            "--",
+        ],
+        env={"PATH": f"{tmp_path}:/usr/bin:/bin", "USED": ""},
+        capture_output=True,
+        text=True,
+        timeout=60,
+        check=True,
+    )
+    used = "".join(f"{tmp_path}/{name} " for name in allowed.split())
+    assert done.stdout == f"{used}|a b --\n"
+    assert done.stderr.splitlines() == [
+        f'sh starts without "{words}", and no bound of archgen holds: {tmp_path}/{words.split()[0]}: not permitted'
+        for words in ("chrt -f 20", "taskset -c 0,2")
+        if words.split()[0] not in allowed
+    ]

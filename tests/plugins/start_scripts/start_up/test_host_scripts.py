@@ -216,6 +216,17 @@ def test_missing_programs_are_said_before_anything_starts(port: int, tmp_path: P
     assert stage.journal == []
 
 
+def test_cores_that_a_computer_lacks_are_said_before_anything_starts(port: int, tmp_path: Path) -> None:
+    script = make_script(tmp_path, port, old="i: a.o}", new="i: a.o}, timing: {core: 900}")
+    run, stage = start(script, tmp_path, port)
+    assert run.wait_for_end() == 2
+    assert run.output.startswith(
+        "b cannot be started with taskset -c 900: that needs rights (rtprio in limits.conf) and"
+    )
+    assert "START_SCHEDULING=no" in run.output
+    assert stage.journal == []
+
+
 def test_settings_are_the_users_own(port: int, tmp_path: Path) -> None:
     script = make_script(
         tmp_path, port, old="once: true", new="once: true, environment: {CLOCK: \"$(date) 'x'\"}, directory: bin"

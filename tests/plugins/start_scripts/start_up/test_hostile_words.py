@@ -66,9 +66,7 @@ def workspace(tmp_path_factory: pytest.TempPathFactory) -> Path:
                 },
             }
         },
-        "hosts": {
-            "box": {"title": TITLE, "hints": {"start": {"image": "x:${Y} $(touch trace)", "address": "$(touch trace)"}}}
-        },
+        "hosts": {"box": {"title": TITLE, "hints": {"start": {"image": "x:${Y} $(touch trace)"}}}},
     }
     (folder / "project").mkdir()
     (folder / "project" / "archgen.yaml").write_text(json.dumps(project, ensure_ascii=False), encoding="utf-8")

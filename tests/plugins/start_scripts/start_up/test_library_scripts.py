@@ -10,7 +10,7 @@ from pathlib import Path
 import pytest
 
 from tests.plugins.start_scripts.start_up.started_workspaces import hold_ports
-from tests.running import ROOT
+from tests.running import ROOT, archgen_here
 
 LIBRARY = ROOT / "archgen/plugins/start_scripts/backends/start/assets/start/lib"
 
@@ -142,6 +142,13 @@ def test_a_program_is_prepared(tools: Tools) -> None:
     assert not (tools.folder / "never").exists()
 
 
+def test_a_program_has_its_priority_and_cores(tools: Tools) -> None:
+    tools.add("chrt", 'printf "%s|" chrt "$@"')
+    run = ["--cpu", "3", "chrt", "-f", "20", "--", "echo", "a b"]
+    assert tools.run("run.sh", *run) == "chrt|-f|20|echo|a b|"
+    assert tools.run("run.sh", *run, START_SCHEDULING="no") == "a b\n"
+
+
 def test_output_is_copied(tools: Tools) -> None:
     said = tools.run("run.sh", "--by-line", "--copy", "copy", "--", "printf", "a\nb", START_FOLDER=str(tools.folder))
     assert said == "a\nb"
@@ -158,3 +165,129 @@ def test_parameters_are_the_output_of_commands(tools: Tools) -> None:
     tools.run("run.sh", "--value", "/arm/robot_description", "2", "printf", "a\nb", "--", "true", START_FOLDER="/")
     assert (tools.folder / "param").read_text(encoding="utf-8") == 'set\n/arm/robot_description\n"a\\nb"\n'
     tools.run("run.sh", "--value", "x", "1", "false", "--", "touch", "never", status=1, START_FOLDER=str(tools.folder))
+
+
+def test_values_are_filled_in_as_launch_files_do(tools: Tools) -> None:
+    """Only those of parameters, and only what launch files fill in."""
+    tools.add("ros2", '[ "$*" = "pkg prefix --share my_desc" ] && echo \'/opt/my "desc\'')
+    tools.add("rospack", '[ "$*" = "find my_desc" ] && echo /opt/desc')
+    tools.add("rosparam", 'printf "%s\\n" "$@" > param')
+    text = ["-p", 'urdf:="$(find-pkg-share my_desc)/$(env HOUSE)/$(touch trace)"']
+    said = tools.run("run.sh", "--fill", "--", "echo", "$(env HOUSE)", *text, START_FOLDER="/", HOUSE="a\\b")
+    assert said == '$(env HOUSE) -p urdf:="/opt/my \\"desc/a\\\\b/$(touch trace)"\n'
+    for written, filled in (("8080", "8080"), ("-1.5", "-1.5"), ("true", "true"), ("a b", '"a b"'), ("", '""')):
+        # What is a text has quotes, and keeps them.
+        words = ("-p", "n:x:=$(env PORT)", "-p", 'n:y:="$(env PORT)"')
+        said = tools.run("run.sh", "--fill", "--", "echo", *words, START_FOLDER="/", PORT=written)
+        assert said == f'-p n:x:={filled} -p n:y:="{written}"\n'
+    said = tools.run("run.sh", "--", "echo", *text, START_FOLDER="/")
+    assert said == " ".join(text) + "\n"
+    setting = ("rosparam", "set", "/arm/$(env HOUSE)", '"$(find my_desc)/x"')
+    tools.run("run.sh", "--fill", "--before", "4", *setting, "--", "true", START_FOLDER="/")
+    assert (tools.folder / "param").read_text(encoding="utf-8") == 'set\n/arm/$(env HOUSE)\n"/opt/desc/x"\n'
+    tools.run("run.sh", "--fill", "--", "echo", "-p", "x:=$(find-pkg-share other)", status=1, START_FOLDER="/")
+
+
+def test_all_who_start_a_node_fill_in_the_same_values(tmp_path: Path) -> None:
+    (tmp_path / "archgen.yaml").write_text(
+        "archgen: 1\nproject: {id: p}\nros: {distro: jazzy}\n"
+        "groups: {g: {components: {a: {functionality: Acts., parameters: {urdf: '$(find-pkg-share d)/x.urdf'}}, b: {functionality: Acts., parameters: {x: '$(rm d)'}}}}}\n",
+        encoding="utf-8",
+    )
+    for backend in ("start", "ros2_launch"):
+        archgen_here("generate", backend, "-o", tmp_path / "w", cwd=tmp_path)
+    start = tmp_path / "w" / "start"
+    scripts = [
+        *start.glob("hosts/*.sh"),
+        *start.rglob("p-a.service"),
+        *start.rglob("p-b.service"),
+        *start.glob("compose/*.yaml"),
+    ]
+    assert len(scripts) == 4
+    found = {each.name: each.read_text(encoding="utf-8").count("--fill") for each in scripts}
+    assert found == {"no-host.sh": 1, "p-a.service": 1, "p-b.service": 0, "no-host.yaml": 1}
+    (host,) = (tmp_path / "w").rglob("no-host.launch.xml")
+    assert 'value="$(find-pkg-share d)/x.urdf"' in host.read_text(encoding="utf-8")
+
+
+@pytest.mark.parametrize(
+    ("status", "declared", "is_text"),
+    [
+        ("planned", "'$(env PORT)'", True),
+        ("existing", "'$(env PORT)'", False),
+        ("existing", "{type: string, value: '$(env PORT)'}", True),
+        ("planned", "{type: integer, value: '$(env PORT)'}", False),
+    ],
+)
+@pytest.mark.parametrize("distro", ["jazzy", "noetic"])
+def test_a_variable_is_a_text_where_the_parameter_is_one(
+    distro: str, status: str, declared: str, *, is_text: bool, tmp_path: Path
+) -> None:
+    """A node of which it is known that it wants a text would not start with a number."""
+    (tmp_path / "archgen.yaml").write_text(
+        f"archgen: 1\nproject: {{id: p}}\nros: {{distro: {distro}}}\n"
+        f"groups: {{g: {{components: {{a: {{functionality: Acts., parameters: {{port: {declared}}}}}}}}}}}\n"
+        f"nodes: {{a: {{implements: a, status: {status}, package: own, executable: a}}}}\n",
+        encoding="utf-8",
+    )
+    ros = 1 if distro == "noetic" else 2
+    for backend in ("start", f"ros{ros}_launch"):
+        archgen_here("generate", backend, "-o", tmp_path / "w", cwd=tmp_path)
+    (script,) = (tmp_path / "w").rglob("start/hosts/*.sh")
+    (launch,) = (tmp_path / "w").rglob("launch/hosts/no-host.launch*")
+    assert ('"$(env PORT)"' in script.read_text(encoding="utf-8")) == is_text
+    assert ('type="str"' in launch.read_text(encoding="utf-8")) == is_text
+
+
+@pytest.mark.parametrize(
+    ("words", "expected"),
+    [
+        (
+            "ros2 run p e x:=/y --ros-args -r __node:=a -r in:=/cam/image -r tf:=/tf -r own:=near -p path:=/etc",
+            "ros2 run p e x:=/y --ros-args -r __node:=a -r in:=/r2/cam/image -r tf:=/tf -r own:=near -p path:=/etc -r __ns:=/r2",
+        ),
+        (
+            "ros2 run p e --ros-args -r __ns:=/arm -r in:=/cam",
+            "ros2 run p e --ros-args -r __ns:=/r2/arm -r in:=/r2/cam",
+        ),
+        (
+            "ros2 component load /box p p::A --node-name a -r in:=/cam",
+            "ros2 component load /r2/box p p::A --node-name a -r in:=/r2/cam --node-namespace /r2",
+        ),
+        (
+            "ros2 component load /box p p::A --node-name a --node-namespace /arm -p path:=/etc",
+            "ros2 component load /r2/box p p::A --node-name a --node-namespace /r2/arm -p path:=/etc",
+        ),
+        ("rosrun p e __name:=a in:=/cam _path:=/etc", "rosrun p e __name:=a in:=/r2/cam _path:=/etc __ns:=/r2"),
+        (
+            "rosrun nodelet nodelet load p/A /box __name:=a __ns:=/arm",
+            "rosrun nodelet nodelet load p/A /r2/box __name:=a __ns:=/r2/arm",
+        ),
+        ("stage /world x:=/y", "stage /world x:=/y"),
+    ],
+)
+def test_a_second_robot_has_names_of_its_own(words: str, expected: str, tools: Tools) -> None:
+    for name in ("ros2", "rosrun", "stage"):
+        tools.add(name, f'echo {name} "$@"')
+    said = tools.run("run.sh", "--same", "/tf", "--", *words.split(), START_FOLDER="/", START_PREFIX="/r2")
+    assert said == f"{expected}\n"
+    assert tools.run("run.sh", "--", *words.split(), START_FOLDER="/") == f"{words}\n"
+
+
+def test_what_is_waited_for_has_names_of_its_own_on_a_second_robot(tools: Tools) -> None:
+    tools.add(
+        "ros2",
+        'echo "$*" >> said; [ "$1 $2" != "service list" ] || printf "/r2/plan\\n/r2/a/change_state\\n"; echo "active [3]"',
+    )
+    tools.look("--service", "/plan", "--lifecycle", "/a", "active", "activate", START_PREFIX="/r2")
+    assert tools.look("--service", "/plan", status=1) == "/plan is not offered"
+    assert "lifecycle get /r2/a" in (tools.folder / "said").read_text(encoding="utf-8")
+
+
+def test_parameters_of_a_second_robot_have_their_names(tools: Tools) -> None:
+    tools.add("rosparam", 'echo "$@" >> param')
+    setting = ("--before", "4", "rosparam", "set", "/arm/x", "1", "--before", "4", "rosparam", "load", "a.yaml", "/arm")
+    time = ("--before", "4", "rosparam", "set", "/use_sim_time", "true", "--value", "/arm/y", "2", "echo", "2")
+    tools.run("run.sh", *setting, *time, "--", "true", START_FOLDER="/", START_PREFIX="/r2")
+    told = (tools.folder / "param").read_text(encoding="utf-8")
+    assert told == 'set /r2/arm/x 1\nload a.yaml /r2/arm\nset /use_sim_time true\nset /r2/arm/y "2"\n'

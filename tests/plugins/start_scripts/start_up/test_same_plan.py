@@ -193,6 +193,28 @@ def test_the_compose_file_has_the_plan(generated: Generated) -> None:
             assert words[-len(step.command) :] == list(step.command)
 
 
+def test_all_give_processes_the_same_priorities_and_cores(generated: Generated) -> None:
+    for host in generated.hosts:
+        scripts = {name: words for name, *words in generated.read_script(host) if "--on" not in words}
+        units, services = generated.read_units(host), generated.read_compose(host)
+        for step in generated.plan.steps:
+            if (step.host or "no-host") != host or not step.command:
+                continue
+            told = step.scheduling
+            front = ["--cpu", str(len(told.words)), *told.words] if told.words else []
+            for words in (scripts[step.file_name], services[step.file_name]["command"]):
+                at = words.index("--cpu") if "--cpu" in words else None
+                assert (words[at : at + len(front)] if at is not None else []) == front
+            unit, service = units[f"{step.file_name}.service"], services[step.file_name]
+            assert unit.get("CPUAffinity", []) == ([" ".join(map(str, told.cores))] if told.cores else [])
+            assert unit.get("CPUSchedulingPriority", []) == ([str(told.priority)] if told.priority else [])
+            assert unit.get("CPUSchedulingPolicy", []) == (["fifo"] if told.priority else [])
+            assert service.get("ulimits") == ({"rtprio": told.priority} if told.priority else None)
+            assert service.get("cap_add") == (["SYS_NICE"] if told.priority else None)
+    has_any = any(step.scheduling.words for step in generated.plan.steps)
+    assert has_any or "ramcip" not in generated.workspace.parent.name
+
+
 def test_compose_files_are_what_the_specification_says(generated: Generated) -> None:
     schema = json.loads((ROOT / "tests" / "judges" / "compose-spec.json").read_text(encoding="utf-8"))
     validator = jsonschema_rs.validator_for(schema)

@@ -63,6 +63,7 @@ def make_stage(folder: Path, ports: list[int]) -> Stage:
     )
 
 
+@pytest.mark.slow
 def test_each_computer_waits_for_the_other(script: Path, ports: list[int], tmp_path: Path) -> None:
     run, stage = start(script, tmp_path, ports, "--all-here")
     run.wait_for("all: 12 steps on 2 computers")
@@ -94,6 +95,7 @@ def test_each_computer_waits_for_the_other(script: Path, ports: list[int], tmp_p
     assert stopped.index("dispatcher") < stopped.index("navigation") < stopped.index("parcel_registry")
 
 
+@pytest.mark.slow
 def test_what_fails_on_one_computer_stops_both(script: Path, ports: list[int], tmp_path: Path) -> None:
     run, stage = start(script, tmp_path, ports, "--all-here")
     run.wait_for("up        parcel_registry")

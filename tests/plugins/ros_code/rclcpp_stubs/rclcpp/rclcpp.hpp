@@ -2,6 +2,7 @@
 #ifndef RCLCPP__RCLCPP_HPP_
 #define RCLCPP__RCLCPP_HPP_
 
+#include <array>
 #include <chrono>
 #include <cstddef>
 #include <cstdint>
@@ -18,6 +19,8 @@
 
 #define RCLCPP_DEBUG(logger, ...) rclcpp::take_words(logger, __VA_ARGS__)
 #define RCLCPP_WARN(logger, ...) rclcpp::take_words(logger, __VA_ARGS__)
+#define RCLCPP_WARN_THROTTLE(logger, clock, milliseconds, ...) \
+  rclcpp::take_words((static_cast<void>((clock).now() + milliseconds), logger), __VA_ARGS__)
 #define RCLCPP_WARN_ONCE(logger, ...) rclcpp::take_words(logger, __VA_ARGS__)
 #define RCLCPP_INFO(logger, ...) rclcpp::take_words(logger, __VA_ARGS__)
 #define RCLCPP_ERROR(logger, ...) rclcpp::take_words(logger, __VA_ARGS__)
@@ -44,10 +47,21 @@ public:
   static Duration from_nanoseconds(std::int64_t nanoseconds);
 };
 
+/// It becomes the message, whose header not each node includes.
+class Time
+{
+public:
+  template<typename Message>
+  operator Message() const;
+};
+
+int operator+(const Time & time, int milliseconds);
+
 class Clock
 {
 public:
   using SharedPtr = std::shared_ptr<Clock>;
+  Time now();
 };
 
 enum class LivelinessPolicy { Automatic, ManualByTopic };
@@ -201,6 +215,11 @@ struct OnSetParametersCallbackHandle
   using SharedPtr = std::shared_ptr<OnSetParametersCallbackHandle>;
 };
 
+struct PostSetParametersCallbackHandle
+{
+  using SharedPtr = std::shared_ptr<PostSetParametersCallbackHandle>;
+};
+
 }  // namespace node_interfaces
 
 template<typename Message>
@@ -210,6 +229,30 @@ public:
   using SharedPtr = std::shared_ptr<Publisher<Message>>;
   void publish(const Message & message);
   void publish(std::unique_ptr<Message> message);
+};
+
+struct GlobalIdentifier
+{
+  std::uint8_t data[16];
+};
+
+struct ReceivedMessage
+{
+  GlobalIdentifier publisher_gid;
+};
+
+class MessageInfo
+{
+public:
+  const ReceivedMessage & get_rmw_message_info() const;
+};
+
+class TopicEndpointInfo
+{
+public:
+  const std::string & node_name() const;
+  const std::string & node_namespace() const;
+  const std::array<std::uint8_t, 16> & endpoint_gid() const;
 };
 
 template<typename Message>
@@ -232,6 +275,13 @@ class Client
 public:
   using SharedPtr = std::shared_ptr<Client<Type>>;
   using SharedFuture = std::shared_future<std::shared_ptr<typename Type::Response>>;
+  struct FutureAndRequestId
+  {
+    std::future<std::shared_ptr<typename Type::Response>> future;
+  };
+
+  FutureAndRequestId async_send_request(std::shared_ptr<typename Type::Request>);
+  bool wait_for_service(std::chrono::nanoseconds timeout);
 
   template<typename Callback>
   void async_send_request(std::shared_ptr<typename Type::Request>, Callback &&)
@@ -244,6 +294,8 @@ class TimerBase
 {
 public:
   using SharedPtr = std::shared_ptr<TimerBase>;
+  void cancel();
+  void reset();
 };
 
 /// What nodes of either kind have.
@@ -251,9 +303,11 @@ class NodeParts
 {
 public:
   using OnSetParametersCallbackHandle = node_interfaces::OnSetParametersCallbackHandle;
+  using PostSetParametersCallbackHandle = node_interfaces::PostSetParametersCallbackHandle;
 
   const char * get_name() const;
   const char * get_namespace() const;
+  const char * get_fully_qualified_name() const;
   Logger get_logger() const;
   Clock::SharedPtr get_clock();
   CallbackGroup::SharedPtr create_callback_group(CallbackGroupType type, bool automatic = true);
@@ -271,8 +325,29 @@ public:
   const ParameterValue & declare_parameter(
     const std::string & name, ParameterType type,
     const rcl_interfaces::msg::ParameterDescriptor & descriptor);
+  bool declare_parameter(const std::string & name, bool value);
+  std::vector<std::string> declare_parameter(
+    const std::string & name, const std::vector<std::string> & value);
+  template<typename Value>
+  bool get_parameter(const std::string & name, Value & value) const
+  {
+    value = get_parameter(name).template get_value<Value>();
+    return true;
+  }
+  std::vector<TopicEndpointInfo> get_publishers_info_by_topic(
+    const std::string & topic, bool no_mangle = false) const;
+  PostSetParametersCallbackHandle::SharedPtr add_post_set_parameters_callback(
+    std::function<void(const std::vector<Parameter> &)>);
   OnSetParametersCallbackHandle::SharedPtr add_on_set_parameters_callback(
     std::function<rcl_interfaces::msg::SetParametersResult(const std::vector<Parameter> &)>);
+
+  template<typename Callback>
+  TimerBase::SharedPtr create_wall_timer(
+    std::chrono::nanoseconds, Callback &&, CallbackGroup::SharedPtr = nullptr)
+  {
+    static_assert(std::is_invocable_v<Callback>, "no callback for a timer");
+    return nullptr;
+  }
 
   template<typename Message, typename Callback>
   typename Subscription<Message>::SharedPtr create_subscription(
@@ -280,7 +355,9 @@ public:
     const SubscriptionOptions & = SubscriptionOptions())
   {
     using Pointer = std::shared_ptr<const Message>;
-    static_assert(std::is_invocable_v<Callback, Pointer>, "no callback for a message");
+    static_assert(
+      std::is_invocable_v<Callback, Pointer> ||
+      std::is_invocable_v<Callback, Pointer, const MessageInfo &>, "no callback for a message");
     return nullptr;
   }
 

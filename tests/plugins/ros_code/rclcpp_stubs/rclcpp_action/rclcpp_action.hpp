@@ -36,6 +36,8 @@ public:
   bool is_canceling() const;
   bool is_executing() const;
   void succeed(std::shared_ptr<typename Action::Result> result);
+  void canceled(std::shared_ptr<typename Action::Result> result);
+  void publish_feedback(std::shared_ptr<typename Action::Feedback> feedback);
   void abort(std::shared_ptr<typename Action::Result> result);
 };
 
@@ -63,6 +65,7 @@ public:
   };
   std::shared_future<typename ClientGoalHandle<Action>::SharedPtr> async_send_goal(
     const typename Action::Goal & goal, const SendGoalOptions & options = SendGoalOptions());
+  bool wait_for_action_server(std::chrono::nanoseconds timeout);
 };
 
 template<typename Action, typename AnyNode>

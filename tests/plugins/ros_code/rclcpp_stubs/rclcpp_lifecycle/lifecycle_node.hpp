@@ -36,6 +36,9 @@ public:
   const State & configure();
 
   virtual CallbackReturn on_configure(const State & previous);
+  virtual CallbackReturn on_activate(const State & previous);
+  virtual CallbackReturn on_deactivate(const State & previous);
+  virtual CallbackReturn on_error(const State & previous);
   virtual CallbackReturn on_cleanup(const State & previous);
   virtual CallbackReturn on_shutdown(const State & previous);
 

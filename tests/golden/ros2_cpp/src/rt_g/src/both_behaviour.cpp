@@ -18,11 +18,11 @@ void BothBehaviour::receive_image(
 {
 }
 
-void BothBehaviour::on_timer_slow()
+void BothBehaviour::on_timer_fast()
 {
 }
 
-void BothBehaviour::on_timer_fast()
+void BothBehaviour::on_timer_slow()
 {
 }
 

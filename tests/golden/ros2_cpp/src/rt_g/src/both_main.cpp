@@ -1,4 +1,4 @@
-// Made by archgen from archgen.yaml:39:3.
+// Made by archgen from both.
 
 #include <memory>
 

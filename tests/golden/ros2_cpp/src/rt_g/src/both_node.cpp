@@ -1,8 +1,10 @@
-// Made by archgen from archgen.yaml:39:3.
+// Made by archgen from both.
 
 #include "rt_g/both_node.hpp"
 
+#include <chrono>
 #include <functional>
+#include <future>
 #include <memory>
 #include <utility>
 
@@ -15,6 +17,7 @@ Both::Both(const rclcpp::NodeOptions & options)
 : rclcpp::Node("both", options)
 {
   quick_group_ = create_callback_group(rclcpp::CallbackGroupType::MutuallyExclusive);
+  answers_group_ = create_callback_group(rclcpp::CallbackGroupType::Reentrant);
   create_interfaces();
   behaviour_ = std::make_unique<BothBehaviour>(*this);
 }
@@ -25,7 +28,7 @@ void Both::create_interfaces()
 {
   // g.slow.image
   image_subscription_ = create_subscription<sensor_msgs::msg::Image>(
-    "/camera/image",
+    "image",
     rclcpp::QoS(rclcpp::KeepLast(10))
     .reliable()
     .durability_volatile(),
@@ -34,15 +37,13 @@ void Both::create_interfaces()
     });
   // g.fast.plan
   plan_service_client_ = create_client<std_srvs::srv::Trigger>(
-    "/g/det/plan",
+    "plan",
     rclcpp::ServicesQoS(),
     quick_group_);
-  // g.slow
-  slow_timer_ = rclcpp::create_timer(
-    this,
-    get_clock(),
-    rclcpp::Duration::from_nanoseconds(500000000),
-    [this]() {behaviour_->on_timer_slow();});
+  plan_waiting_client_ = create_client<std_srvs::srv::Trigger>(
+    "plan",
+    rclcpp::ServicesQoS(),
+    answers_group_);
   // g.fast
   fast_timer_ = rclcpp::create_timer(
     this,
@@ -50,6 +51,12 @@ void Both::create_interfaces()
     rclcpp::Duration::from_nanoseconds(20000000),
     [this]() {behaviour_->on_timer_fast();},
     quick_group_);
+  // g.slow
+  slow_timer_ = rclcpp::create_timer(
+    this,
+    get_clock(),
+    rclcpp::Duration::from_nanoseconds(500000000),
+    [this]() {behaviour_->on_timer_slow();});
 }
 
 void Both::call_plan(
@@ -61,6 +68,17 @@ void Both::call_plan(
     [callback](rclcpp::Client<std_srvs::srv::Trigger>::SharedFuture future) {
       callback(future.get());
     });
+}
+
+std::shared_future<std_srvs::srv::Trigger::Response::SharedPtr>
+Both::call_plan(std_srvs::srv::Trigger::Request::SharedPtr request)
+{
+  return plan_waiting_client_->async_send_request(std::move(request)).future.share();
+}
+
+bool Both::wait_for_plan(std::chrono::nanoseconds timeout)
+{
+  return plan_service_client_->wait_for_service(timeout);
 }
 
 }  // namespace rt_g

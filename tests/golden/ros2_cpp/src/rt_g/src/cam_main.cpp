@@ -1,4 +1,4 @@
-// Made by archgen from archgen.yaml:37:3.
+// Made by archgen from cam.
 
 #include <memory>
 

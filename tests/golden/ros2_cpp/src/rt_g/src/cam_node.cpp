@@ -1,4 +1,4 @@
-// Made by archgen from archgen.yaml:37:3.
+// Made by archgen from cam.
 
 #include "rt_g/cam_node.hpp"
 
@@ -19,6 +19,19 @@ namespace rt_g
 namespace
 {
 
+/// Tell the own class of new values, where it has a method for them.
+template<typename Own>
+auto tell_values(Own & own, const std::vector<rclcpp::Parameter> & values, int)
+-> decltype(own.on_parameters(values))
+{
+  return own.on_parameters(values);
+}
+
+template<typename Own>
+void tell_values(Own &, const std::vector<rclcpp::Parameter> &, ...)
+{
+}
+
 template<typename Value>
 bool are_among(const std::vector<Value> & values, const std::vector<Value> & choices)
 {
@@ -36,6 +49,12 @@ Cam::Cam(const rclcpp::NodeOptions & options)
   parameter_listener_ = std::make_unique<cam_parameters::ParamListener>(
     get_node_parameters_interface(), get_logger());
   declare_own_parameters();
+  values_handle_ = add_post_set_parameters_callback(
+    [this](const std::vector<rclcpp::Parameter> & values) {
+      if (behaviour_) {
+        tell_values(*behaviour_, values, 0);
+      }
+    });
   create_interfaces();
   behaviour_ = std::make_unique<CamBehaviour>(*this);
 }
@@ -54,15 +73,7 @@ void Cam::declare_own_parameters()
       return check_choices(parameters);
     });
   {
-    // archgen.yaml:15:54
-    rcl_interfaces::msg::ParameterDescriptor descriptor;
-    declare_parameter(
-      "lens.class",
-      rclcpp::ParameterValue(std::int64_t{3}),
-      descriptor);
-  }
-  {
-    // archgen.yaml:16:11
+    // g.cam.greeting
     rcl_interfaces::msg::ParameterDescriptor descriptor;
     descriptor.additional_constraints =
       "One of say \"hello\", bye";
@@ -72,7 +83,15 @@ void Cam::declare_own_parameters()
       descriptor);
   }
   {
-    // archgen.yaml:18:11
+    // g.cam.lens.class
+    rcl_interfaces::msg::ParameterDescriptor descriptor;
+    declare_parameter(
+      "lens.class",
+      rclcpp::ParameterValue(std::int64_t{3}),
+      descriptor);
+  }
+  {
+    // g.cam.map_file
     rcl_interfaces::msg::ParameterDescriptor descriptor;
     descriptor.description =
       "Where it is kept.";
@@ -105,17 +124,17 @@ rcl_interfaces::msg::SetParametersResult Cam::check_choices(
 
 void Cam::create_interfaces()
 {
-  // g.cam.image
-  image_publisher_ = create_publisher<sensor_msgs::msg::Image>(
-    "/camera/image",
-    rclcpp::QoS(rclcpp::KeepLast(5))
-    .best_effort()
-    .durability_volatile());
   // g.cam.cloud
   cloud_publisher_ = create_publisher<sensor_msgs::msg::PointCloud2>(
-    "/g/cam/cloud",
+    "cloud",
     rclcpp::QoS(rclcpp::KeepLast(10))
     .reliable()
+    .durability_volatile());
+  // g.cam.image
+  image_publisher_ = create_publisher<sensor_msgs::msg::Image>(
+    "image",
+    rclcpp::QoS(rclcpp::KeepLast(5))
+    .best_effort()
     .durability_volatile());
   // g.cam
   timer_ = rclcpp::create_timer(
@@ -123,16 +142,6 @@ void Cam::create_interfaces()
     get_clock(),
     rclcpp::Duration::from_nanoseconds(100000000),
     [this]() {behaviour_->on_timer();});
-}
-
-void Cam::publish_image(const sensor_msgs::msg::Image & message)
-{
-  image_publisher_->publish(message);
-}
-
-void Cam::publish_image(sensor_msgs::msg::Image::UniquePtr message)
-{
-  image_publisher_->publish(std::move(message));
 }
 
 void Cam::publish_cloud(const sensor_msgs::msg::PointCloud2 & message)
@@ -143,6 +152,16 @@ void Cam::publish_cloud(const sensor_msgs::msg::PointCloud2 & message)
 void Cam::publish_cloud(sensor_msgs::msg::PointCloud2::UniquePtr message)
 {
   cloud_publisher_->publish(std::move(message));
+}
+
+void Cam::publish_image(const sensor_msgs::msg::Image & message)
+{
+  image_publisher_->publish(message);
+}
+
+void Cam::publish_image(sensor_msgs::msg::Image::UniquePtr message)
+{
+  image_publisher_->publish(std::move(message));
 }
 
 }  // namespace rt_g

@@ -15,13 +15,22 @@ DetBehaviour::DetBehaviour(Det & node)
   RCLCPP_DEBUG(node_.get_logger(), "ready");
 }
 
-void DetBehaviour::receive_image(
-  sensor_msgs::msg::Image::ConstSharedPtr /*message*/)
+bool DetBehaviour::on_activate()
+{
+  return true;
+}
+
+void DetBehaviour::on_deactivate()
 {
 }
 
 void DetBehaviour::receive_cloud(
   sensor_msgs::msg::PointCloud2::ConstSharedPtr /*message*/)
+{
+}
+
+void DetBehaviour::receive_image(
+  sensor_msgs::msg::Image::ConstSharedPtr /*message*/)
 {
 }
 
@@ -36,8 +45,9 @@ void DetBehaviour::serve_plan(
 void DetBehaviour::execute_go(
   std::shared_ptr<rclcpp_action::ServerGoalHandle<test_msgs::action::Fibonacci>> goal)
 {
-  RCLCPP_WARN(
-    node_.get_logger(), "execute_go is not written yet: its goals are aborted");
+  RCLCPP_WARN_THROTTLE(
+    node_.get_logger(), *node_.get_clock(), 5000,
+    "execute_go is not written yet: its goals are aborted");
   goal->abort(std::make_shared<test_msgs::action::Fibonacci::Result>());
 }
 

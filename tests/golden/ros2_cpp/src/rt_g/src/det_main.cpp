@@ -1,4 +1,4 @@
-// Made by archgen from archgen.yaml:40:3.
+// Made by archgen from det.
 
 #include <memory>
 

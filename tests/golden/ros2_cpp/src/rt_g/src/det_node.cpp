@@ -1,4 +1,4 @@
-// Made by archgen from archgen.yaml:40:3.
+// Made by archgen from det.
 
 #include "rt_g/det_node.hpp"
 
@@ -6,6 +6,9 @@
 #include <exception>
 #include <future>
 #include <memory>
+#include <mutex>
+#include <string>
+#include <type_traits>
 #include <utility>
 
 #include "rt_g/det_behaviour.hpp"
@@ -13,8 +16,39 @@
 namespace rt_g
 {
 
+namespace
+{
+
+/// Call a hook of the own class where it has it. One that returns false fails.
+template<typename Own, typename Hook>
+bool run_hook([[maybe_unused]] Own * own, [[maybe_unused]] Hook hook)
+{
+  if constexpr (std::is_invocable_r_v<bool, Hook, Own &>) {
+    return !own || hook(*own);
+  } else if constexpr (std::is_invocable_v<Hook, Own &>) {
+    if (own) {
+      hook(*own);
+    }
+  }
+  return true;
+}
+
+/// Say a refusal in a response that has a message.
+template<typename Response>
+auto say(Response & response, const std::string & text, int) -> decltype(response.message = text)
+{
+  return response.message = text;
+}
+
+template<typename Response>
+void say(Response &, const std::string &, ...)
+{
+}
+
+}  // namespace
+
 Det::Det(const rclcpp::NodeOptions & options)
-: rclcpp_lifecycle::LifecycleNode("det", "/perception", options)
+: rclcpp_lifecycle::LifecycleNode("det", options)
 {
   reentrant_group_ = create_callback_group(rclcpp::CallbackGroupType::Reentrant);
 }
@@ -35,32 +69,40 @@ void Det::create_interfaces()
     .lifespan(rclcpp::Duration::from_nanoseconds(1000000000))
     .liveliness(rclcpp::LivelinessPolicy::ManualByTopic)
     .liveliness_lease_duration(rclcpp::Duration::from_nanoseconds(2000000000)));
-  // g.det.image
-  image_subscription_ = create_subscription<sensor_msgs::msg::Image>(
-    "/camera/image",
-    rclcpp::QoS(rclcpp::KeepLast(10))
-    .reliable()
-    .durability_volatile(),
-    [this](sensor_msgs::msg::Image::ConstSharedPtr message) {
-      behaviour_->receive_image(std::move(message));
-    },
-    reentrant_options);
   // g.det.cloud
   cloud_subscription_ = create_subscription<sensor_msgs::msg::PointCloud2>(
-    "/g/cam/cloud",
+    "cloud",
     rclcpp::QoS(rclcpp::KeepLast(10))
     .reliable()
     .durability_volatile(),
     [this](sensor_msgs::msg::PointCloud2::ConstSharedPtr message) {
-      behaviour_->receive_cloud(std::move(message));
+      if (is_hearing_) {
+        behaviour_->receive_cloud(std::move(message));
+      }
+    },
+    reentrant_options);
+  // g.det.image
+  image_subscription_ = create_subscription<sensor_msgs::msg::Image>(
+    "image",
+    rclcpp::QoS(rclcpp::KeepLast(10))
+    .reliable()
+    .durability_volatile(),
+    [this](sensor_msgs::msg::Image::ConstSharedPtr message) {
+      if (is_hearing_) {
+        behaviour_->receive_image(std::move(message));
+      }
     },
     reentrant_options);
   // g.det.plan
   plan_service_ = create_service<std_srvs::srv::Trigger>(
-    "/g/det/plan",
+    "plan",
     [this](
       const std_srvs::srv::Trigger::Request::SharedPtr request,
       const std_srvs::srv::Trigger::Response::SharedPtr response) {
+      if (!is_hearing_) {
+        say(*response, refuse("plan"), 0);
+        return;
+      }
       behaviour_->serve_plan(*request, *response);
     },
     rclcpp::ServicesQoS(),
@@ -68,8 +110,12 @@ void Det::create_interfaces()
   // g.det.go
   go_action_server_ = rclcpp_action::create_server<test_msgs::action::Fibonacci>(
     this,
-    "/g/det/go",
-    [](const rclcpp_action::GoalUUID &, const auto & /*goal*/) {
+    "go",
+    [this](const rclcpp_action::GoalUUID &, const auto & /*goal*/) {
+      if (!is_hearing_) {
+        refuse("go");
+        return rclcpp_action::GoalResponse::REJECT;
+      }
       return rclcpp_action::GoalResponse::ACCEPT_AND_EXECUTE;
     },
     [](const auto & /*goal*/) {
@@ -95,6 +141,9 @@ void Det::publish_found(std_msgs::msg::String::UniquePtr message)
 void Det::accept_go(
   std::shared_ptr<rclcpp_action::ServerGoalHandle<test_msgs::action::Fibonacci>> goal)
 {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  go_handles_.remove_if([](const auto & each) {return each.expired();});
+  go_handles_.push_back(goal);
   go_goals_.remove_if(
     [](const std::future<void> & each) {
       return each.wait_for(std::chrono::seconds(0)) == std::future_status::ready;
@@ -115,29 +164,111 @@ void Det::accept_go(
       }));
 }
 
+std::string Det::refuse(const std::string & port) const
+{
+  const std::string text = port + " is refused: " + get_name() + " is not active";
+  RCLCPP_WARN(get_logger(), "%s", text.c_str());
+  return text;
+}
+
 Det::CallbackReturn Det::on_configure(const rclcpp_lifecycle::State & state)
 {
   create_interfaces();
   behaviour_ = std::make_unique<DetBehaviour>(*this);
-  return LifecycleNode::on_configure(state);
+  LifecycleNode::on_configure(state);
+  if (!run_hook(
+      behaviour_.get(),
+      [](auto & own) -> decltype(own.on_configure()) {return own.on_configure();}))
+  {
+    destroy_interfaces();
+    return CallbackReturn::FAILURE;
+  }
+  return CallbackReturn::SUCCESS;
+}
+
+Det::CallbackReturn Det::on_activate(const rclcpp_lifecycle::State & state)
+{
+  LifecycleNode::on_activate(state);
+  is_sending_ = true;
+  if (!run_hook(
+      behaviour_.get(),
+      [](auto & own) -> decltype(own.on_activate()) {return own.on_activate();}))
+  {
+    silence(state);
+    return CallbackReturn::FAILURE;
+  }
+  is_hearing_ = true;
+  return CallbackReturn::SUCCESS;
+}
+
+Det::CallbackReturn Det::on_deactivate(const rclcpp_lifecycle::State & state)
+{
+  is_hearing_ = false;
+  run_hook(
+    behaviour_.get(),
+    [](auto & own) -> decltype(own.on_deactivate()) {return own.on_deactivate();});
+  silence(state);
+  return CallbackReturn::SUCCESS;
+}
+
+void Det::silence(const rclcpp_lifecycle::State & state)
+{
+  is_hearing_ = false;
+  {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    for (const auto & each : go_handles_) {
+      const auto goal = each.lock();
+      try {
+        if (goal && goal->is_active()) {
+          goal->abort(std::make_shared<test_msgs::action::Fibonacci::Result>());
+        }
+      } catch (const std::exception & error) {
+        // Its own thread was quicker.
+        RCLCPP_DEBUG(get_logger(), "%s", error.what());
+      }
+    }
+  }
+  is_sending_ = false;
+  LifecycleNode::on_deactivate(state);
 }
 
 Det::CallbackReturn Det::on_cleanup(const rclcpp_lifecycle::State & state)
 {
+  run_hook(
+    behaviour_.get(),
+    [](auto & own) -> decltype(own.on_cleanup()) {return own.on_cleanup();});
   destroy_interfaces();
   return LifecycleNode::on_cleanup(state);
 }
 
 Det::CallbackReturn Det::on_shutdown(const rclcpp_lifecycle::State & state)
 {
+  if (is_sending_) {
+    on_deactivate(state);
+  }
+  run_hook(
+    behaviour_.get(),
+    [](auto & own) -> decltype(own.on_shutdown()) {return own.on_shutdown();});
   destroy_interfaces();
-  return LifecycleNode::on_shutdown(state);
+  return CallbackReturn::SUCCESS;
+}
+
+Det::CallbackReturn Det::on_error(const rclcpp_lifecycle::State & state)
+{
+  if (is_sending_) {
+    on_deactivate(state);
+  }
+  run_hook(
+    behaviour_.get(),
+    [](auto & own) -> decltype(own.on_error()) {return own.on_error();});
+  destroy_interfaces();
+  return CallbackReturn::SUCCESS;
 }
 
 void Det::destroy_interfaces()
 {
-  image_subscription_.reset();
   cloud_subscription_.reset();
+  image_subscription_.reset();
   plan_service_.reset();
   go_action_server_.reset();
   go_goals_.clear();

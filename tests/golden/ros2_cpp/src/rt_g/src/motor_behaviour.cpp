@@ -1,4 +1,4 @@
-// What M1 does: written once by archgen, and yours since.
+// What Motor does: written once by archgen, and yours since.
 
 #include "rt_g/motor_behaviour.hpp"
 

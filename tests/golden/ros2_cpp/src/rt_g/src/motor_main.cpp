@@ -1,4 +1,4 @@
-// Made by archgen from archgen.yaml:24:7.
+// Made by archgen from motor.
 
 #include <memory>
 

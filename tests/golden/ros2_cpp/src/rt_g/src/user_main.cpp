@@ -1,4 +1,4 @@
-// Made by archgen from archgen.yaml:38:3.
+// Made by archgen from user.
 
 #include <memory>
 

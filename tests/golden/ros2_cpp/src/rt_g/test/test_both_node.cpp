@@ -1,4 +1,4 @@
-// Made by archgen from archgen.yaml:39:3.
+// Made by archgen from both.
 
 #include <gtest/gtest.h>
 
@@ -56,7 +56,7 @@ TEST_F(BothTest, Subscribes)
   const auto node_topics = node_->get_node_topics_interface();
   std::set<std::string> names;
   // g.slow.image
-  names.insert(node_topics->resolve_topic_name("/camera/image"));
+  names.insert(node_topics->resolve_topic_name("image"));
   const auto missing = wait_for(
     names, [this]() {
       return node_->get_node_graph_interface()->get_subscriber_names_and_types_by_node(
@@ -70,7 +70,7 @@ TEST_F(BothTest, Calls)
   const auto node_services = node_->get_node_services_interface();
   std::set<std::string> names;
   // g.fast.plan
-  names.insert(node_services->resolve_service_name("/g/det/plan"));
+  names.insert(node_services->resolve_service_name("plan"));
   const auto missing = wait_for(
     names, [this]() {
       return node_->get_node_graph_interface()->get_client_names_and_types_by_node(

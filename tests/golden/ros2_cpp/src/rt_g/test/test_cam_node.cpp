@@ -1,4 +1,4 @@
-// Made by archgen from archgen.yaml:37:3.
+// Made by archgen from cam.
 
 #include <gtest/gtest.h>
 
@@ -58,10 +58,10 @@ TEST_F(CamTest, Publishes)
 {
   const auto node_topics = node_->get_node_topics_interface();
   std::set<std::string> names;
-  // g.cam.image
-  names.insert(node_topics->resolve_topic_name("/camera/image"));
   // g.cam.cloud
-  names.insert(node_topics->resolve_topic_name("/g/cam/cloud"));
+  names.insert(node_topics->resolve_topic_name("cloud"));
+  // g.cam.image
+  names.insert(node_topics->resolve_topic_name("image"));
   const auto missing = wait_for(
     names, [this]() {
       return node_->get_node_graph_interface()->get_publisher_names_and_types_by_node(
@@ -72,10 +72,19 @@ TEST_F(CamTest, Publishes)
 
 TEST_F(CamTest, HasItsParameters)
 {
-  ASSERT_TRUE(node_->has_parameter("rate"));
+  ASSERT_TRUE(node_->has_parameter("greeting"));
   EXPECT_EQ(
-    node_->get_parameter("rate").get_value<double>(),
-    10.0);
+    node_->get_parameter("greeting").get_value<std::string>(),
+    std::string("say \"hello\""));
+  ASSERT_TRUE(node_->has_parameter("lens.class"));
+  EXPECT_EQ(
+    node_->get_parameter("lens.class").get_value<std::int64_t>(),
+    std::int64_t{3});
+  ASSERT_TRUE(node_->has_parameter("lens.focus"));
+  EXPECT_EQ(
+    node_->get_parameter("lens.focus").get_value<double>(),
+    0.5);
+  ASSERT_TRUE(node_->has_parameter("map_file"));
   ASSERT_TRUE(node_->has_parameter("mode"));
   EXPECT_EQ(
     node_->get_parameter("mode").get_value<std::string>(),
@@ -84,21 +93,12 @@ TEST_F(CamTest, HasItsParameters)
   EXPECT_EQ(
     node_->get_parameter("names").get_value<std::vector<std::string>>(),
     (std::vector<std::string>{"a", "b'c"}));
-  ASSERT_TRUE(node_->has_parameter("lens.focus"));
+  ASSERT_TRUE(node_->has_parameter("rate"));
   EXPECT_EQ(
-    node_->get_parameter("lens.focus").get_value<double>(),
-    0.5);
-  ASSERT_TRUE(node_->has_parameter("lens.class"));
-  EXPECT_EQ(
-    node_->get_parameter("lens.class").get_value<std::int64_t>(),
-    std::int64_t{3});
-  ASSERT_TRUE(node_->has_parameter("greeting"));
-  EXPECT_EQ(
-    node_->get_parameter("greeting").get_value<std::string>(),
-    std::string("say \"hello\""));
+    node_->get_parameter("rate").get_value<double>(),
+    10.0);
   ASSERT_TRUE(node_->has_parameter("size"));
   EXPECT_EQ(
     node_->get_parameter("size").get_value<std::int64_t>(),
     std::int64_t{640});
-  ASSERT_TRUE(node_->has_parameter("map_file"));
 }

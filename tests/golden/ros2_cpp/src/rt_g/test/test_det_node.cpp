@@ -1,4 +1,4 @@
-// Made by archgen from archgen.yaml:40:3.
+// Made by archgen from det.
 
 #include <gtest/gtest.h>
 
@@ -70,10 +70,10 @@ TEST_F(DetTest, Subscribes)
 {
   const auto node_topics = node_->get_node_topics_interface();
   std::set<std::string> names;
-  // g.det.image
-  names.insert(node_topics->resolve_topic_name("/camera/image"));
   // g.det.cloud
-  names.insert(node_topics->resolve_topic_name("/g/cam/cloud"));
+  names.insert(node_topics->resolve_topic_name("cloud"));
+  // g.det.image
+  names.insert(node_topics->resolve_topic_name("image"));
   const auto missing = wait_for(
     names, [this]() {
       return node_->get_node_graph_interface()->get_subscriber_names_and_types_by_node(
@@ -87,7 +87,7 @@ TEST_F(DetTest, Serves)
   const auto node_services = node_->get_node_services_interface();
   std::set<std::string> names;
   // g.det.plan
-  names.insert(node_services->resolve_service_name("/g/det/plan"));
+  names.insert(node_services->resolve_service_name("plan"));
   const auto missing = wait_for(
     names, [this]() {
       return node_->get_node_graph_interface()->get_service_names_and_types_by_node(

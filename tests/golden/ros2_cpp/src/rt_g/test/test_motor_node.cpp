@@ -1,4 +1,4 @@
-// Made by archgen from archgen.yaml:24:7.
+// Made by archgen from motor.
 
 #include <gtest/gtest.h>
 
@@ -23,9 +23,6 @@ protected:
   {
     rclcpp::init(0, nullptr);
     rclcpp::NodeOptions options;
-    options.append_parameter_override(
-      "joint",
-      std::string("left"));
     node_ = std::make_shared<rt_g::Motor>(options);
   }
 
@@ -61,7 +58,7 @@ TEST_F(MotorTest, Publishes)
 {
   const auto node_topics = node_->get_node_topics_interface();
   std::set<std::string> names;
-  // g.m1.state
+  // motor.state
   names.insert(node_topics->resolve_topic_name("state"));
   const auto missing = wait_for(
     names, [this]() {
@@ -75,7 +72,7 @@ TEST_F(MotorTest, Subscribes)
 {
   const auto node_topics = node_->get_node_topics_interface();
   std::set<std::string> names;
-  // g.m1.target
+  // motor.target
   names.insert(node_topics->resolve_topic_name("target"));
   const auto missing = wait_for(
     names, [this]() {
@@ -88,4 +85,7 @@ TEST_F(MotorTest, Subscribes)
 TEST_F(MotorTest, HasItsParameters)
 {
   ASSERT_TRUE(node_->has_parameter("joint"));
+  EXPECT_EQ(
+    node_->get_parameter("joint").get_value<std::string>(),
+    std::string("left"));
 }

@@ -1,4 +1,4 @@
-// Made by archgen from archgen.yaml:38:3.
+// Made by archgen from user.
 
 #include <gtest/gtest.h>
 
@@ -56,7 +56,7 @@ TEST_F(AskerTest, Calls)
   const auto node_services = node_->get_node_services_interface();
   std::set<std::string> names;
   // g.user.plan
-  names.insert(node_services->resolve_service_name("/g/det/plan"));
+  names.insert(node_services->resolve_service_name("plan"));
   const auto missing = wait_for(
     names, [this]() {
       return node_->get_node_graph_interface()->get_client_names_and_types_by_node(

@@ -17,14 +17,14 @@ public:
   /// Remember the node: it publishes, calls, logs and knows its parameters.
   explicit BothBehaviour(Both & node);
 
-  /// Take a message from /camera/image.
+  /// Take a message from image.
   void receive_image(sensor_msgs::msg::Image::ConstSharedPtr message);
-
-  /// Do what is done every 0.5 s.
-  void on_timer_slow();
 
   /// Do what is done every 0.02 s.
   void on_timer_fast();
+
+  /// Do what is done every 0.5 s.
+  void on_timer_slow();
 
 private:
   Both & node_;

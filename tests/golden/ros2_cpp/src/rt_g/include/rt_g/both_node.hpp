@@ -1,10 +1,12 @@
-// Made by archgen from archgen.yaml:39:3.
+// Made by archgen from both.
 // What the node does stands in both_behaviour.cpp.
 
 #ifndef RT_G__BOTH_NODE_HPP_
 #define RT_G__BOTH_NODE_HPP_
 
+#include <chrono>
 #include <functional>
+#include <future>
 #include <memory>
 
 #include "rclcpp/rclcpp.hpp"
@@ -31,15 +33,26 @@ public:
     std_srvs::srv::Trigger::Request::SharedPtr request,
     std::function<void(std_srvs::srv::Trigger::Response::SharedPtr)> callback);
 
+  /// Send a request of g.fast.plan.
+  /// Return the future of its response. Wait for it where another thread takes it:
+  /// in the thread of a goal, or with `threads` of more than one.
+  std::shared_future<std_srvs::srv::Trigger::Response::SharedPtr>
+  call_plan(std_srvs::srv::Trigger::Request::SharedPtr request);
+
+  /// Return whether its server is there, after waiting so long for it at most.
+  bool wait_for_plan(std::chrono::nanoseconds timeout);
+
 private:
   void create_interfaces();
 
   rclcpp::CallbackGroup::SharedPtr quick_group_;
+  rclcpp::CallbackGroup::SharedPtr answers_group_;
   rclcpp::Client<std_srvs::srv::Trigger>::SharedPtr plan_service_client_;
+  rclcpp::Client<std_srvs::srv::Trigger>::SharedPtr plan_waiting_client_;
   std::unique_ptr<BothBehaviour> behaviour_;
   rclcpp::Subscription<sensor_msgs::msg::Image>::SharedPtr image_subscription_;
-  rclcpp::TimerBase::SharedPtr slow_timer_;
   rclcpp::TimerBase::SharedPtr fast_timer_;
+  rclcpp::TimerBase::SharedPtr slow_timer_;
 };
 
 }  // namespace rt_g

@@ -1,4 +1,4 @@
-// Made by archgen from archgen.yaml:37:3.
+// Made by archgen from cam.
 // What the node does stands in cam_behaviour.cpp.
 
 #ifndef RT_G__CAM_NODE_HPP_
@@ -29,17 +29,17 @@ public:
   /// Return the values that its parameters have now.
   cam_parameters::Params read_parameters() const;
 
-  /// Publish g.cam.image.
-  void publish_image(const sensor_msgs::msg::Image & message);
-
-  /// Publish it without a copy where the subscriber is in the same process.
-  void publish_image(sensor_msgs::msg::Image::UniquePtr message);
-
   /// Publish g.cam.cloud.
   void publish_cloud(const sensor_msgs::msg::PointCloud2 & message);
 
-  /// Publish it without a copy where the subscriber is in the same process.
+  /// Publish it, without a copy where its container has intra-process communication on.
   void publish_cloud(sensor_msgs::msg::PointCloud2::UniquePtr message);
+
+  /// Publish g.cam.image.
+  void publish_image(const sensor_msgs::msg::Image & message);
+
+  /// Publish it, without a copy where its container has intra-process communication on.
+  void publish_image(sensor_msgs::msg::Image::UniquePtr message);
 
 private:
   void declare_own_parameters();
@@ -49,8 +49,9 @@ private:
 
   std::unique_ptr<cam_parameters::ParamListener> parameter_listener_;
   OnSetParametersCallbackHandle::SharedPtr choices_handle_;
-  rclcpp::Publisher<sensor_msgs::msg::Image>::SharedPtr image_publisher_;
+  PostSetParametersCallbackHandle::SharedPtr values_handle_;
   rclcpp::Publisher<sensor_msgs::msg::PointCloud2>::SharedPtr cloud_publisher_;
+  rclcpp::Publisher<sensor_msgs::msg::Image>::SharedPtr image_publisher_;
   std::unique_ptr<CamBehaviour> behaviour_;
   rclcpp::TimerBase::SharedPtr timer_;
 };

@@ -23,18 +23,24 @@ public:
   /// Remember the node: it publishes, calls, logs and knows its parameters.
   explicit DetBehaviour(Det & node);
 
-  /// Take a message from /camera/image.
-  void receive_image(sensor_msgs::msg::Image::ConstSharedPtr message);
+  /// Begin: it may send now, and hears from then on. Return false to stay inactive.
+  bool on_activate();
 
-  /// Take a message from /g/cam/cloud.
+  /// End: it hears nothing more, and what it sends here is the last that goes out.
+  void on_deactivate();
+
+  /// Take a message from cloud.
   void receive_cloud(sensor_msgs::msg::PointCloud2::ConstSharedPtr message);
 
-  /// Answer a request to /g/det/plan.
+  /// Take a message from image.
+  void receive_image(sensor_msgs::msg::Image::ConstSharedPtr message);
+
+  /// Answer a request to plan.
   void serve_plan(
     const std_srvs::srv::Trigger::Request & request,
     std_srvs::srv::Trigger::Response & response);
 
-  /// Carry out a goal of /g/det/go.
+  /// Carry out a goal of go.
   /// It has a thread of its own. End early where goal->is_executing() or rclcpp::ok() is false.
   void execute_go(
     std::shared_ptr<rclcpp_action::ServerGoalHandle<test_msgs::action::Fibonacci>> goal);

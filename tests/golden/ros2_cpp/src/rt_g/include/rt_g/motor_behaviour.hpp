@@ -1,4 +1,4 @@
-// What M1 does: written once by archgen, and yours since.
+// What Motor does: written once by archgen, and yours since.
 
 #ifndef RT_G__MOTOR_BEHAVIOUR_HPP_
 #define RT_G__MOTOR_BEHAVIOUR_HPP_
@@ -10,7 +10,7 @@ namespace rt_g
 
 class Motor;
 
-/// M1.
+/// Motor.
 class MotorBehaviour
 {
 public:

@@ -1,4 +1,4 @@
-// Made by archgen from archgen.yaml:24:7.
+// Made by archgen from motor.
 // What the node does stands in motor_behaviour.cpp.
 
 #ifndef RT_G__MOTOR_NODE_HPP_
@@ -15,7 +15,7 @@ namespace rt_g
 
 class MotorBehaviour;
 
-/// M1.
+/// Motor.
 class Motor : public rclcpp::Node
 {
 public:
@@ -27,16 +27,17 @@ public:
   /// Return the values that its parameters have now.
   motor_parameters::Params read_parameters() const;
 
-  /// Publish g.m1.state.
+  /// Publish motor.state.
   void publish_state(const std_msgs::msg::String & message);
 
-  /// Publish it without a copy where the subscriber is in the same process.
+  /// Publish it, without a copy where its container has intra-process communication on.
   void publish_state(std_msgs::msg::String::UniquePtr message);
 
 private:
   void create_interfaces();
 
   std::unique_ptr<motor_parameters::ParamListener> parameter_listener_;
+  PostSetParametersCallbackHandle::SharedPtr values_handle_;
   rclcpp::Publisher<std_msgs::msg::String>::SharedPtr state_publisher_;
   std::unique_ptr<MotorBehaviour> behaviour_;
   rclcpp::Subscription<std_msgs::msg::String>::SharedPtr target_subscription_;

@@ -4,7 +4,7 @@
 
 ids=() failure='' interrupt='' announced=no is_follower=no run=''
 phases=(network simulators core components)
-declare -A phase=() number=() kind=() host_of=() state=() log=() within=() user=() directory=() respawn=()
+declare -A phase=() number=() kind=() host_of=() state=() log=() within=() user=() directory=() respawn=() cpu_words=()
 declare -A deadline=() again_at=() reason=() told_at=() address=() is_told=()
 guarded='' never='' locked='' left_over=no shown_host='' host='' open_phase=network
 library=$(cd -- "$(dirname -- "${BASH_SOURCE[0]}")" && pwd)
@@ -51,6 +51,9 @@ step() {
       --set) its_variables+=("$2"); shift 2 ;;
       --in) directory[$id]=$2; shift 2 ;;
       --as) user[$id]=$2; shift 2 ;;
+      --same) its_before+=("$1" "$2"); shift 2 ;;
+      --fill) its_before+=("$1"); shift ;;
+      --cpu) cpu_words[$id]=${*:3:$2} its_before+=("$1" "$2" "${@:3:$2}"); shift $(($2 + 2)) ;;
       --before) its_before+=("$1" "$2" "${@:3:$2}"); shift $(($2 + 2)) ;;
       --value) its_before+=("$1" "$2" "$3" "${@:4:$3}"); shift $(($3 + 3)) ;;
       --) shift; break ;;

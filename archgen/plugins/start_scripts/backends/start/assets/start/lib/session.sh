@@ -58,6 +58,14 @@ find_missing_programs() {
     find_user_words "$id"
     "${user_words[@]}" true 2>/dev/null || printf '%s runs as %s, and this user may not become that one\n' "$id" "${user[$id]}"
   done
+  for id in "${ids[@]}"; do
+    [[ ${kind[$id]} != elsewhere && -n ${cpu_words[$id]-} && ${START_SCHEDULING-} != no ]] || continue
+    local words user_words
+    read -ra words <<<"${cpu_words[$id]}"
+    find_user_words "$id"
+    "${user_words[@]}" "${words[@]}" true 2>/dev/null ||
+      printf '%s cannot be started with %s: that needs rights (rtprio in limits.conf) and these cores; START_SCHEDULING=no starts all without\n' "$id" "${cpu_words[$id]}"
+  done
 }
 
 make_run_folder() { # NAME

@@ -20,12 +20,14 @@ while (($#)); do
     --missing) missing_file=$2; shift 2 ;;
     --address) address=$2; shift 2 ;;
     --output) output=$2 older_bytes=$3; shift 3 ;;
-    --port | --file | --topic | --service | --log | --time) signs+=("${1#--}" "$2"); shift 2 ;;
-    --load) loads=(service "$2/_container/load_node" load "$2"); shift 2 ;;
+    --port | --file | --log | --time) signs+=("${1#--}" "$2"); shift 2 ;;
+    --topic | --service) signs+=("${1#--}" "${START_PREFIX-}$2"); shift 2 ;;
+    --load) loads=(service "${START_PREFIX-}$2/_container/load_node" load "${START_PREFIX-}$2"); shift 2 ;;
     --lifecycle)
-      changes=(service "$2/change_state")
-      for transition in $4; do changes+=(transition "$2 $transition"); done
-      changes+=(state "$2 $3")
+      node=${START_PREFIX-}$2
+      changes=(service "$node/change_state")
+      for transition in $4; do changes+=(transition "$node $transition"); done
+      changes+=(state "$node $3")
       shift 4
       ;;
     --) shift; break ;;

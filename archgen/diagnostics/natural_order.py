@@ -1,0 +1,14 @@
+"""Names in the order in which people count: `g2` before `g10`."""
+
+from __future__ import annotations
+
+import re
+
+_NUMBER = re.compile(r"([0-9]{1,18})")
+"""Longer rows of digits are no numbers that anybody counts by."""
+
+
+def order_naturally(name: str) -> tuple[tuple[tuple[int, int, str], ...], str]:
+    """Return what a name sorts by: its numbers by their value, its letters whatever their case, at last as it is written."""
+    parts = _NUMBER.split(name.casefold())
+    return tuple((0, int(part), "") if at % 2 else (1, 0, part) for at, part in enumerate(parts)), name

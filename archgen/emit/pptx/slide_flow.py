@@ -1,0 +1,309 @@
+"""What stands where on slides: blocks become pieces of known height, which flow over as many slides as they need.
+
+Programs let the rows of a table grow with their text, so heights are estimated, as those of the report are.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from math import fsum
+
+from archgen.emit.picture import Picture
+from archgen.emit.text_metrics import BOLD_FACTOR, count_lines
+from archgen.frozen import dataclass, replace
+from archgen.views.shapes import Block, Bullets, Facts, Figure, Inlines, Markdown, Paragraph, Section, Table, Text
+
+SLIDE_WIDTH, SLIDE_HEIGHT = 960.0, 540.0
+"""In points, as all lengths here."""
+MARGIN = 36.0
+BODY_TOP, BODY_BOTTOM = 84.0, 504.0
+_GUTTER = 24.0
+_LEFT_SHARE = 0.58
+"""The first of two columns: the picture, or what flows."""
+_LINE = 1.23
+"""LibreOffice sets lines of Carlito and Consolas so high."""
+_PADDING = 3.0
+"""Above and below the text of a cell."""
+SIDE_PADDING = 5.0
+_GAP = 8.0
+_TEXT_SIZE, _COLUMN_TEXT_SIZE = 14.0, 12.0
+_CELL_SIZES, _COLUMN_CELL_SIZES = (14.0, 12.5, 11.0), (12.0, 11.0, 10.0)
+"""Tables are set in the largest type in which all of a column has room, else in the smallest."""
+_MAX_CELL_LINES, _MAX_TEXT_LINES = 6, 10
+"""Longer texts end in an ellipsis: a slide is looked at, the report has all of it."""
+_LEAST_PICTURE = 150.0
+"""A picture that would be less high begins a slide."""
+_LEAST_SCALE = 0.55
+"""A picture that a whole slide shows smaller has type that nobody reads."""
+FIGURE_SCALE = 1.9
+"""How much larger figures are than the words below them."""
+_CODE_EXCESS = 0.25
+"""How much wider than text code runs."""
+_SAFETY = 0.96
+"""The share of a width that is taken for lines: fonts differ from program to program."""
+
+
+@dataclass(frozen=True, slots=True)
+class Place:
+    """A rectangle of a slide."""
+
+    left: float
+    top: float
+    width: float
+    height: float
+
+
+@dataclass(frozen=True, slots=True)
+class PlacedText:
+    """Paragraphs in a box, each with its runs; sizes are those of the type."""
+
+    place: Place
+    paragraphs: tuple[Inlines, ...]
+    size: float
+
+
+@dataclass(frozen=True, slots=True)
+class PlacedTable:
+    """Some rows of a table below its heading."""
+
+    place: Place
+    table: Table
+    widths: tuple[float, ...]
+    heights: tuple[float, ...]
+    size: float
+    has_heading: bool
+
+
+@dataclass(frozen=True, slots=True)
+class PlacedPicture:
+    """A picture, as large as its place allows."""
+
+    place: Place
+    picture: Picture
+    alt: str
+
+
+Placed = PlacedText | PlacedTable | PlacedPicture
+
+
+@dataclass(frozen=True, slots=True)
+class _Column:
+    """A column of a slide: where it stands and how its text is set."""
+
+    left: float
+    width: float
+    text_size: float
+    cell_sizes: tuple[float, ...]
+
+
+def flow_section(section: Section, pictures: Mapping[str, Picture]) -> tuple[tuple[Placed, ...], ...]:
+    """Return what stands on each slide of a section; at least one, which may be empty."""
+    full = SLIDE_WIDTH - 2 * MARGIN
+    if len(section.sections) > 1:
+        left = round((full - _GUTTER) * _LEFT_SHARE)
+        columns = [
+            (section.sections[0].blocks, _Column(MARGIN, left, _COLUMN_TEXT_SIZE, _COLUMN_CELL_SIZES)),
+            (
+                tuple(block for each in section.sections[1:] for block in each.blocks),
+                _Column(MARGIN + left + _GUTTER, full - left - _GUTTER, _COLUMN_TEXT_SIZE, _COLUMN_CELL_SIZES),
+            ),
+        ]
+    else:
+        blocks = (*section.blocks, *(block for each in section.sections for block in each.blocks))
+        columns = [(blocks, _Column(MARGIN, full, _TEXT_SIZE, _CELL_SIZES))]
+    sheets: list[list[Placed]] = [[]]
+    for column_blocks, column in columns:
+        for number, placed in _flow_largest(column_blocks, column, pictures):
+            while len(sheets) <= number:
+                sheets.append([])
+            sheets[number].append(placed)
+    return tuple(map(tuple, sheets))
+
+
+def _flow_largest(
+    blocks: Sequence[Block], column: _Column, pictures: Mapping[str, Picture]
+) -> list[tuple[int, Placed]]:
+    """Return what blocks become, tables in the largest type in which one slide has room, else in the smallest."""
+    flowed: list[tuple[int, Placed]] = []
+    for size in column.cell_sizes:
+        flowed = list(_flow_blocks(blocks, replace(column, cell_sizes=(size,)), pictures))
+        if all(number == 0 for number, _ in flowed):
+            break
+    return flowed
+
+
+def _flow_blocks(
+    blocks: Sequence[Block], column: _Column, pictures: Mapping[str, Picture]
+) -> Iterator[tuple[int, Placed]]:
+    """Yield what blocks become, each with the number of its slide."""
+    sheet, top = 0, BODY_TOP
+    for index, block in enumerate(blocks):
+        follower = blocks[index + 1] if index + 1 < len(blocks) else None
+        if isinstance(block, Table):
+            for part in _cut_table(block, column, BODY_BOTTOM - top):
+                height = fsum(part.heights)
+                if top + height > BODY_BOTTOM and top > BODY_TOP:
+                    sheet, top = sheet + 1, BODY_TOP
+                yield sheet, replace(part, place=Place(column.left, top, column.width, height))
+                top += height + _GAP
+        elif isinstance(block, Figure):
+            picture = pictures.get(block.graph)
+            is_large = picture is not None and _fit_picture(picture, column, BODY_TOP) < _LEAST_SCALE
+            if picture is None or not picture.png or is_large:
+                lack = "is too large for a slide; the site has it" if is_large else "could not be drawn"
+                note = (Text(f"This picture {lack}. {block.alt}".strip(), muted=True),)
+                text = _fit_text((note,), column)
+                yield sheet, _place_text(text, column, top)
+                top += _measure_text(text, column) + _GAP
+                continue
+            if BODY_BOTTOM - top < _LEAST_PICTURE:
+                sheet, top = sheet + 1, BODY_TOP
+            scale = _fit_picture(picture, column, top)
+            width, height = picture.width * scale, picture.height * scale
+            place = Place(column.left + (column.width - width) / 2, top, width, height)
+            yield sheet, PlacedPicture(place, picture, block.alt or block.caption)
+            top += height + _GAP
+        else:
+            for paragraph in _list_paragraphs(block):
+                text = _fit_text((paragraph,), column)
+                height = _measure_text(text, column)
+                # A line above a table stays with its first row.
+                needed = height + (_measure_start(follower, column) if isinstance(follower, Table) else 0)
+                if top + needed > BODY_BOTTOM and top > BODY_TOP:
+                    sheet, top = sheet + 1, BODY_TOP
+                yield sheet, _place_text(text, column, top)
+                top += height + _GAP
+
+
+def _fit_picture(picture: Picture, column: _Column, top: float) -> float:
+    return min(column.width / picture.width, (BODY_BOTTOM - top) / picture.height)
+
+
+def _list_paragraphs(block: Block) -> Iterator[Inlines]:
+    match block:
+        case Paragraph():
+            yield block.inlines
+        case Bullets():
+            for item in block.items:
+                yield (Text("• "), *item)
+        case Facts():
+            for name, value in block.rows:
+                yield (Text(f"{name}: ", strong=True), *value)
+        case Markdown():
+            yield (Text(" ".join(block.text.split())),)
+
+
+def _fit_text(paragraphs: Sequence[Inlines], column: _Column) -> tuple[Inlines, ...]:
+    return tuple(_cut_runs(each, column.width, column.text_size, _MAX_TEXT_LINES) for each in paragraphs)
+
+
+def _measure_text(paragraphs: Sequence[Inlines], column: _Column) -> float:
+    lines = sum(_count_run_lines(each, column.width, column.text_size) for each in paragraphs)
+    return lines * column.text_size * _LINE + 2
+
+
+def _place_text(paragraphs: tuple[Inlines, ...], column: _Column, top: float) -> PlacedText:
+    height = _measure_text(paragraphs, column)
+    return PlacedText(Place(column.left, top, column.width, height), paragraphs, column.text_size)
+
+
+def _count_run_lines(inlines: Inlines, width: float, size: float) -> int:
+    """Return how many lines runs take; each line break begins one."""
+    is_bold = any(run.strong or run.status for run in inlines)
+    letters = sum(len(run.text) for run in inlines) or 1
+    code_share = sum(len(run.text) for run in inlines if run.code) / letters
+    usable = width * _SAFETY / (size * (BOLD_FACTOR if is_bold else 1) * (1 + _CODE_EXCESS * code_share))
+    lines = "".join(f"\n{run.text}" if run.line_break else run.text for run in inlines).split("\n")
+    return sum(count_lines(line, usable) for line in lines)
+
+
+def _cut_runs(inlines: Inlines, width: float, size: float, max_lines: int) -> Inlines:
+    """Return runs that take at most so many lines; what is cut ends in an ellipsis."""
+    kept = tuple(replace(run, text=" ".join(run.text.split("\n"))) if "\n" in run.text else run for run in inlines)
+    room = sum(len(run.text) for run in kept)
+    while (lines := _count_run_lines(kept, width, size)) > max_lines:
+        room = min(room * max_lines // lines, room - 1)
+        kept = tuple(_take_characters(kept, max(room, 1)))
+        if room <= 1:
+            break
+    return kept
+
+
+def _take_characters(inlines: Inlines, room: int) -> Iterator[Text]:
+    for run in inlines:
+        if len(run.text) >= room:
+            yield replace(run, text=f"{run.text[: room - 1].rstrip()}…")
+            return
+        room -= len(run.text)
+        yield run
+
+
+def _cut_table(table: Table, column: _Column, room: float) -> Iterator[PlacedTable]:
+    """Yield parts of a table, the first one in the room that is left, the others on slides of their own."""
+    table = _drop_bars(table)
+    whole = _set_table(table, column, column.cell_sizes[-1])
+    top = 1 if whole.has_heading else 0
+    head, heights = whole.heights[:top], whole.heights[top:]
+    start, used = 0, fsum(head)
+    for at, height in enumerate(heights):
+        if used + height > room:
+            if at > start:
+                yield _take_rows(whole, head, start, at)
+            start, used, room = at, fsum(head), BODY_BOTTOM - BODY_TOP
+        used += height
+    yield _take_rows(whole, head, start, len(heights))
+
+
+def _take_rows(whole: PlacedTable, head: tuple[float, ...], start: int, end: int) -> PlacedTable:
+    heights = (*head, *whole.heights[len(head) + start : len(head) + end])
+    return replace(whole, table=replace(whole.table, rows=whole.table.rows[start:end]), heights=heights)
+
+
+def _set_table(table: Table, column: _Column, size: float) -> PlacedTable:
+    """Return a table as it is in a type size, wherever it stands."""
+    widths = _share_width(table, column)
+    has_heading = any(each.title for each in table.columns)
+    rows = tuple(
+        tuple(
+            _cut_runs(cell, width - 2 * SIDE_PADDING, size, _MAX_CELL_LINES)
+            for cell, width in zip(row, widths, strict=True)
+        )
+        for row in table.rows
+    )
+    heights = [_measure_row(row, widths, size, is_figures=not has_heading) for row in rows]
+    if has_heading:
+        titles = tuple((Text(each.title, strong=True),) for each in table.columns)
+        heights.insert(0, _measure_row(titles, widths, size, is_figures=False))
+    return PlacedTable(Place(0, 0, 0, 0), replace(table, rows=rows), widths, tuple(heights), size, has_heading)
+
+
+def _drop_bars(table: Table) -> Table:
+    """Return a table without columns of nothing but bars."""
+    kept = [at for at in range(len(table.columns)) if any(run.text for row in table.rows for run in row[at])]
+    return replace(
+        table,
+        columns=tuple(table.columns[at] for at in kept or [0]),
+        rows=tuple(tuple(row[at] for at in kept or [0]) for row in table.rows),
+    )
+
+
+def _share_width(table: Table, column: _Column) -> tuple[float, ...]:
+    total = fsum(each.weight for each in table.columns)
+    return tuple(column.width * each.weight / total for each in table.columns)
+
+
+def _measure_row(row: Sequence[Inlines], widths: Sequence[float], size: float, *, is_figures: bool) -> float:
+    lines = max(
+        (
+            _count_run_lines(cell, width - 2 * SIDE_PADDING, size) + (FIGURE_SCALE - 1 if is_figures else 0)
+            for cell, width in zip(row, widths, strict=True)
+        ),
+        default=1,
+    )
+    return lines * size * _LINE + 2 * _PADDING
+
+
+def _measure_start(table: Table, column: _Column) -> float:
+    """Return the height of a table's heading and its first row in the smallest type."""
+    first = _set_table(replace(table, rows=table.rows[:1]), column, column.cell_sizes[-1])
+    return fsum(first.heights)

@@ -1,0 +1,1 @@
+"""A project that stays read while somebody works on it, with texts that are not saved."""

@@ -1,0 +1,219 @@
+"""What a partner has to do, in one list over all kinds: by what rests on it. And whom he waits for, what others changed for
+him, what is still to be made. Each row is one that another output tells: nothing is judged here.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from typing import TYPE_CHECKING, Literal
+
+from archgen.diagnostics.common_wording import join_words
+from archgen.diagnostics.diagnostic import Diagnostic, Severity
+from archgen.diagnostics.source_span import NO_SPAN, Span
+from archgen.frozen import dataclass, replace
+from archgen.model.node import Node
+from archgen.views import element_references
+from archgen.views.agreement.exchange_tables import PartnerExchange
+from archgen.views.agreement.interface_terms import InterfaceTerms
+from archgen.views.lookup import Lookup
+from archgen.views.reliance.partner_impact import AwaitedInterface, PartnerImpact
+from archgen.views.timing import chain_status, timing_verdicts, value_format
+
+if TYPE_CHECKING:  # a site that is compared with nothing loads no comparison
+    from archgen.compare import Comparison
+
+TaskKind = Literal["finding", "contradiction", "term", "chain", "host", "requirement"]
+
+
+@dataclass(frozen=True, slots=True)
+class Task:
+    """Something to do: what, in a sentence that quotes names; the chains, requirements and partners that wait for it; where."""
+
+    kind: TaskKind
+    text: str
+    chains: tuple[str, ...] = ()
+    requirements: tuple[str, ...] = ()
+    partners: tuple[str, ...] = ()
+    place: Span = NO_SPAN
+    finding: Diagnostic | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class PlannedNode:
+    """A node that is still to be made, with what waits for it."""
+
+    node: Node
+    chains: tuple[str, ...]
+    requirements: tuple[str, ...]
+    partners: tuple[str, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class PartnerTasks:
+    """What a partner has to do (what most rests on first), and what he waits for: terms that others owe him.
+
+    `changes` are None where the project was compared with nothing.
+    """
+
+    impact: PartnerImpact
+    tasks: tuple[Task, ...]
+    awaited: tuple[InterfaceTerms, ...]
+    planned: tuple[PlannedNode, ...]
+    changes: tuple[str, ...] | None
+
+
+def find_tasks(
+    lookup: Lookup, exchanges: Sequence[PartnerExchange], impact: PartnerImpact, comparison: Comparison | None = None
+) -> PartnerTasks:
+    """Return what the partner of an impact has to do."""
+    partner = impact.late.owners[0]
+    own = [exchange for exchange in exchanges if partner in exchange.pair]
+    tasks = [
+        *_list_findings(lookup, partner),
+        *_list_contradictions(own, partner),
+        *_list_terms(lookup, impact),
+        *_list_chains(lookup, partner),
+        *_list_hosts(lookup, impact),
+        *_list_requirements(lookup, impact),
+    ]
+    awaited = [terms for each in own for terms in each.interfaces if terms.interface.pair[1] == partner]
+    return PartnerTasks(
+        impact,
+        tuple(sorted(tasks, key=_rank)),
+        tuple(sorted((terms for terms in awaited if terms.open_names), key=lambda each: -len(each.chains))),
+        tuple(_list_planned(lookup, impact, partner)),
+        None if comparison is None else tuple(_list_changes(comparison, partner)),
+    )
+
+
+def _rank(task: Task) -> tuple[bool, int, int, int]:
+    """Return the sort key: errors, then what most deadlines, requirements and partners rest on."""
+    is_error = task.finding is not None and task.finding.effective_severity is Severity.ERROR
+    return not is_error, -len(task.chains), -len(task.requirements), -len(task.partners)
+
+
+def _list_findings(lookup: Lookup, partner: str) -> Iterator[Task]:
+    """Yield the errors and warnings that are his to mend."""
+    for finding in lookup.findings:
+        name = finding.element or ""
+        is_grave = finding.effective_severity in {Severity.ERROR, Severity.WARNING}
+        if is_grave and partner in element_references.find_answering(lookup, name, finding.span):
+            chains = (name,) if name in lookup.architecture.chains else ()
+            requirements = (name,) if name in lookup.architecture.requirements else ()
+            yield Task("finding", finding.message, chains, requirements, (), finding.span, finding)
+
+
+def _list_contradictions(exchanges: Sequence[PartnerExchange], partner: str) -> Iterator[Task]:
+    for exchange in exchanges:
+        other = next(each for each in exchange.pair if each != partner)
+        for terms in exchange.interfaces:
+            place = terms.interface.output.at if terms.interface.output else NO_SPAN
+            chains = _list_deadlines(terms)
+            yield from (Task("contradiction", text, chains, (), (other,), place) for text in terms.contradictions)
+
+
+def _list_deadlines(terms: InterfaceTerms) -> tuple[str, ...]:
+    return tuple(chain.id for chain in terms.chains if chain.deadline or chain.shares)
+
+
+def _list_terms(lookup: Lookup, impact: PartnerImpact) -> Iterator[Task]:
+    """Yield the terms that he owes: a task for each interface, whoever takes it."""
+    for each in impact.interfaces:
+        if each.open_words:
+            output = each.terms[0].interface.output
+            place = output.at if output else NO_SPAN
+            text = f"State {join_words(each.open_words)} of `{each.terms[0].interface.key}`"
+            yield Task("term", text, each.chains, _list_served(lookup, impact, each), each.takers, place)
+
+
+def _list_served(lookup: Lookup, impact: PartnerImpact, awaited: AwaitedInterface) -> tuple[str, ...]:
+    """Return the requirements that what gives an interface serves, and nobody else."""
+    output = awaited.terms[0].interface.output
+    component = lookup.architecture.components[output.component] if output else None
+    served = {use.text for use in component.requirements} if component else set()
+    return tuple(
+        each.requirement.id for each in impact.requirements if not each.others and each.requirement.id in served
+    )
+
+
+def _list_chains(lookup: Lookup, partner: str) -> Iterator[Task]:
+    """Yield the chains that are not shown to be in time, that no finding is about, and in which he has to act."""
+    for result in timing_verdicts.list_silent_chains(lookup) if lookup.timing else ():
+        chain = lookup.architecture.chains[result.id]
+        if lookup.timing and partner in element_references.find_answering(lookup, result.id, chain.at):
+            chip = "".join(run.text for run in chain_status.chain_chip(result))
+            missing = value_format.describe_missing(result.bound, lookup.timing.analysis, 3)
+            asked = (
+                f"Bring `{chain.id}` below its" if result.verdict == "missed" else f"Show that `{chain.id}` meets its"
+            )
+            # One without a deadline has none to keep: its figures are missing.
+            lead = f"{asked} deadline" if chain.deadline_text else f"Complete the figures of `{chain.id}`"
+            deadlines = (chain.id,) if chain.deadline_text else ()
+            text = f"{lead}: {chip}{f'; {missing}' if missing else ''}"
+            yield Task("chain", text, deadlines, chain.requirements, (), chain.at)
+
+
+def _list_hosts(lookup: Lookup, impact: PartnerImpact) -> Iterator[Task]:
+    """Yield his activities that nothing proves to be done before they are due again, by host."""
+    for name, load in lookup.timing.analysis.hosts.items() if lookup.timing else ():
+        own = [each for each in load.unproven if each in impact.late.activities]
+        if own:
+            chains = tuple(
+                each.result.id for each in impact.chains if any(term.activity in own for term in each.result.terms)
+            )
+            members, (verb, who) = (
+                join_words([f"`{each}`" for each in own]),
+                ("is", "it is") if len(own) == 1 else ("are", "they are"),
+            )
+            text = f"Show that {members} on `{name}` {verb} done before {who} due again"
+            yield Task("host", text, chains, (), (), lookup.architecture.hosts[name].at)
+
+
+def _list_requirements(lookup: Lookup, impact: PartnerImpact) -> Iterator[Task]:
+    """Yield the requirements that only he serves and that nothing verifies, where the project says of others what does."""
+    trace = lookup.requirement_trace
+    for each in impact.requirements:
+        name = each.requirement.id
+        if trace.is_verification_told and not each.others and name not in trace.verified:
+            yield Task("requirement", f"Say what verifies `{name}`", (), (name,), (), each.requirement.at)
+
+
+def _list_planned(lookup: Lookup, impact: PartnerImpact, partner: str) -> Iterator[PlannedNode]:
+    """Yield the nodes that he has still to make, what most waits for first."""
+    found = []
+    alone = {each.requirement.id for each in impact.requirements if not each.others}
+    activities = lookup.timing.activities_of_node if lookup.timing else {}
+    for node in lookup.architecture.nodes.values():
+        if node.status != "planned" or partner not in element_references.list_node_owners(lookup.architecture, node.id):
+            continue
+        own = {each.id for each in activities.get(node.id, ())}
+        chains = [each.result.id for each in impact.chains if any(term.activity in own for term in each.result.terms)]
+        components = [lookup.architecture.components[name] for name in node.implements]
+        requirements = dict.fromkeys(use.text for each in components for use in each.requirements if use.text in alone)
+        given = [
+            each
+            for each in impact.interfaces
+            if any(end.node == node.id for every in each.terms for end in every.interface.giver_endpoints)
+        ]
+        partners = dict.fromkeys(taker for each in given for taker in each.takers)
+        found.append(PlannedNode(node, tuple(chains), tuple(requirements), tuple(partners)))
+    yield from sorted(found, key=lambda each: (-len(each.chains), -len(each.requirements), -len(each.partners)))
+
+
+def _list_changes(comparison: Comparison, partner: str) -> Iterator[str]:
+    """Yield the changes of others that concern him, those that break him first, and what comes to him otherwise now."""
+    from archgen.compare.concerned_owners import find_concerned_owners
+    from archgen.views.changes.boundary_lines import write_boundary_lines
+
+    own_ids = (comparison.before.architecture, comparison.after.architecture)
+    others = [
+        change
+        for change in comparison.changes
+        if partner in find_concerned_owners((change,), comparison.versions)
+        and not any(partner in element_references.find_owners(each, change.element_id) for each in own_ids)
+    ]
+    for change in sorted(others, key=lambda each: partner not in each.broken_partners):
+        yield f"{'breaks: ' if partner in change.broken_partners else ''}{change.text}"
+    taken = tuple(each for each in comparison.boundaries if partner in (*each.takers, *each.old_takers))
+    titles = {each.id: each.title for each in comparison.after.architecture.partners.values()}
+    yield from (line.text for line in write_boundary_lines(replace(comparison, boundaries=taken), titles))

@@ -1,0 +1,221 @@
+"""The report to hand in: its chapters in short, what partners owe each other, and what stands in data sheets and workbook."""
+
+from __future__ import annotations
+
+import re
+from collections import Counter
+from dataclasses import replace
+from importlib import import_module
+from pathlib import Path
+
+import pytest
+
+from archgen import pipeline
+from archgen.frozen import replace as replace_frozen
+from archgen.model.document_chapters import GENERATED_CHAPTERS
+from archgen.products.output_options import OutputOptions
+from archgen.products.product_inputs import ProductInputs
+from archgen.products.project_views import ProjectViews, make_views
+from archgen.views.agreement.exchange_tables import gather_exchanges
+from archgen.views.pages.partner_spreads import make_partner_chapter
+from archgen.views.report.data_sheets import make_data_sheets, number_sheets
+from archgen.views.report.deliverable import make_deliverable
+from archgen.views.report.printed_report import walk_sections
+from archgen.views.shapes import Outline, Section, Table
+from tests.judged_projects import judge_ramcip
+from tests.views.report.report_texts import list_texts
+
+_BENCHMARK = import_module("benchmarks.generate")
+
+
+@pytest.fixture(scope="module")
+def views() -> ProjectViews:
+    return make_views(judge_ramcip(), OutputOptions(revision="r", show_history=False), is_report_alone=True)
+
+
+@pytest.fixture(scope="module")
+def deliverable(views: ProjectViews) -> Outline:
+    return make_deliverable(views.lookup, replace_frozen(views.edition, document="deliverable"))
+
+
+def _find(outline: Outline, anchor: str) -> Section:
+    return next(section for section in walk_sections(outline.sections) if section.anchor == anchor)
+
+
+def _tables(section: Section) -> list[Table]:
+    return [block for each in walk_sections((section,)) for block in each.blocks if isinstance(block, Table)]
+
+
+def _read(cell: tuple[object, ...]) -> str:
+    return "".join(run.text for run in cell)  # type: ignore[attr-defined]
+
+
+def test_its_chapters_are_those_of_the_project_and_the_summary_is_first(deliverable: Outline) -> None:
+    assert [section.title for section in deliverable.sections] == [
+        "Summary",
+        "Introduction",
+        "Scenarios",
+        "Between partners",
+        "Use cases",
+        "Frames",
+        "Deployment and trials",
+        "Variants",
+        "Hosts and links",
+        "Chains of effect",
+        "Risks",
+        "Requirements, and what proves them",
+        "Open points, by who must act",
+        "Data sheets and lists",
+    ]
+    assert not any(section.appendix for section in deliverable.sections)
+
+
+def test_a_chapter_that_the_project_leaves_out_is_not_there(views: ProjectViews) -> None:
+    edition = replace_frozen(views.edition, document="deliverable", chapter_names=("overview", "chains"))
+    outline = make_deliverable(views.lookup, edition)
+    assert [section.title for section in outline.sections] == ["Summary", "Chains of effect", "Data sheets and lists"]
+
+
+@pytest.mark.parametrize("name", GENERATED_CHAPTERS)
+def test_each_chapter_can_stand_alone(views: ProjectViews, name: str) -> None:
+    edition = replace_frozen(views.edition, document="deliverable", chapter_names=(name,))
+    outline = make_deliverable(views.lookup, edition)
+    anchors = Counter(section.anchor for section in walk_sections(outline.sections))
+    assert max(anchors.values()) == 1
+
+
+def test_each_interface_stands_at_its_giver_and_at_its_taker(views: ProjectViews, deliverable: Outline) -> None:
+    given, taken = Counter[str](), Counter[str]()
+    for exchange in gather_exchanges(views.lookup):
+        for partner in exchange.pair:
+            for interface in exchange.interfaces:
+                giver, taker = interface.interface.pair
+                given[partner] += partner == giver
+                taken[partner] += partner == taker
+    outputs = {
+        partner: len({t.interface.key for e in gather_exchanges(views.lookup) for t in e.list_given(partner)})
+        for partner in given
+    }
+    for partner in given:
+        tables = {table.kind: table for table in _tables(_find(deliverable, f"partner:{partner}"))}
+        assert len(tables["table:gives"].rows) == outputs[partner] if outputs[partner] else "table:gives" not in tables
+        assert len(tables["table:takes"].rows) <= taken[partner]
+    forth = {table.kind: table for table in _tables(_find(deliverable, "partner:forth"))}
+    first = [_read(cell) for cell in forth["table:gives"].rows[0]]
+    assert first[0] == "User answerDialogue Manager"
+    assert first[2:] == ["/dialogue/answers", "2\u202fHz", "660", "170", "rate", "QoS"]
+
+
+def test_what_a_partner_owes_is_what_the_pair_pages_count(views: ProjectViews, deliverable: Outline) -> None:
+    owed = Counter[str]()
+    for exchange in gather_exchanges(views.lookup):
+        for terms in exchange.interfaces:
+            owed[terms.interface.pair[0]] += len(terms.open_points)
+    sums = next(t for t in _tables(_find(deliverable, "page:partners")) if t.anchor == "table:partner_sums")
+    titles = {partner.title: name for name, partner in views.lookup.architecture.partners.items()}
+    shown = {titles[_read(row[0])]: _read(row[-1]) for row in sums.rows}
+    assert shown == {
+        name: f"{owed[name]} term{'s' * (owed[name] != 1)}" if owed[name] else "nothing" for name in titles.values()
+    }
+
+
+def test_requirements_that_nobody_serves_stand_first_and_each_says_its_proof(deliverable: Outline) -> None:
+    (table,) = _tables(_find(deliverable, "page:requirements"))
+    proofs = [_read(row[-1]) for row in table.rows]
+    assert proofs[0] == "nobody serves it"
+    assert proofs.count("nobody serves it") == 1
+    assert all(proofs)
+    kinds = ["chain" if re.match(r"(met|open|missed|not proven) ", proof) else "trial" for proof in proofs[1:]]
+    assert kinds == sorted(kinds)
+    ids = [_read(row[0]) for row in table.rows]
+    assert len(ids) == len(set(ids)) == 29
+    assert _read(table.rows[ids.index("R-02")][-1]) == "met 125\u202fms of 350\u202fms"
+
+
+def test_a_chain_says_its_verdict_and_the_time_of_each_step(views: ProjectViews, deliverable: Outline) -> None:
+    timing = views.lookup.timing
+    assert timing is not None
+    overview = next(t for t in _tables(_find(deliverable, "page:chains")) if t.anchor == "table:chains")
+    for result in timing.chains:
+        section = _find(deliverable, f"chain:{result.id}")
+        assert section.title in {_read(row[0]) for row in overview.rows}
+        (table,) = _tables(section)
+        assert len(table.rows) == len(result.terms) + 1
+        assert next(iter(section.blocks)).inlines[0].text.casefold().startswith(result.verdict)  # type: ignore[union-attr]
+
+
+def test_every_finding_is_an_open_point_of_somebody(views: ProjectViews, deliverable: Outline) -> None:
+    (table,) = _tables(_find(deliverable, "page:findings"))
+    said = "\n".join(_read(row[1]).replace("\u202f", " ") for row in table.rows)
+    assert [f.message for f in views.lookup.findings if f.message.replace("`", "") not in said] == []
+    assert _read(table.rows[0][0])
+
+
+def test_a_column_of_times_has_one_unit_and_a_table_too(deliverable: Outline) -> None:
+    units = {}
+    for table in (t for section in deliverable.sections for t in _tables(section)):
+        found = {
+            column.title.rpartition(", ")[2] for column in table.columns if re.search(r", (s|ms|µs|ns)$", column.title)
+        }
+        units[table.anchor] = found
+    assert {anchor: found for anchor, found in units.items() if len(found) > 1} == {}
+    assert sum(map(bool, units.values())) > 20
+
+
+def test_each_component_has_a_sheet_with_all_its_ports(views: ProjectViews) -> None:
+    outline = make_data_sheets(views.lookup, replace_frozen(views.edition, document="data-sheets"))
+    sheets = [section for section in walk_sections(outline.sections) if section.anchor.startswith("component:")]
+    architecture = views.lookup.architecture
+    assert sorted(section.subject for section in sheets) == sorted(architecture.components)
+    for section in sheets:
+        component = architecture.components[section.subject]
+        tables = [table for table in _tables(section) if table.kind in {"table:inputs", "table:outputs"}]
+        shown = {_read(row[0]) for table in tables for row in table.rows}
+        assert {*component.inputs, *component.outputs} <= {name.split(" ")[0] for name in shown}, section.title
+    numbers = [number for each in number_sheets(views.lookup).values() for number, _ in each]
+    assert len(numbers) == len(set(numbers)) == len(sheets)
+
+
+@pytest.mark.slow
+def test_many_flows_are_told_together_and_the_workbook_has_each(tmp_path: Path) -> None:
+    _BENCHMARK.generate(400, tmp_path, _BENCHMARK.Amounts(partners=3, chains=4))
+    checked = pipeline.check_project(tmp_path)
+    views = make_views(checked, OutputOptions(show_history=False), undrawn_kinds=("component",), is_report_alone=True)
+    folded, whole = (make_partner_chapter(views.lookup, folds=folds) for folds in (True, False))
+    assert folded is not None
+    assert whole is not None
+    rows = [max(len(table.rows) for table in _tables(chapter)) for chapter in (folded, whole)]
+    assert rows[0] <= 44 < rows[1]
+    assert "told together with the highest figures. The workbook has each." in "\n".join(list_texts(folded))
+    edition = replace_frozen(views.edition, document="deliverable")
+    assert len("".join(list_texts(make_deliverable(views.lookup, edition).sections[-1]))) < 12_000
+
+
+@pytest.mark.parametrize(
+    "source",
+    [
+        "groups: {}",
+        "groups: {g: {components: {c: {}}}}",
+        "partners: {a: {}}\ngroups: {g: {owner: a, components: {c: {outputs: [X]}}}}",
+        "partners: {a: {}, b: {}}\ngroups: {g: {owner: a, components: {c: {}}}}\nuse_cases: {U: {title: U}}",
+    ],
+    ids=["nothing", "no partner", "one partner", "nothing between partners"],
+)
+def test_a_project_without_partners_chains_or_components_has_one(source: str, tmp_path: Path) -> None:
+    (tmp_path / "archgen.yaml").write_text(f"{source}\n", encoding="utf-8")
+    checked = pipeline.check_project(tmp_path)
+    for document in ("deliverable", "data-sheets"):
+        options = OutputOptions(show_history=False, document=document)
+        outline = ProductInputs(checked, options).printed_report
+        assert "Between partners" not in [section.title for section in outline.sections]
+        assert all(block.rows for section in outline.sections for block in _tables(section))
+
+
+def test_a_part_has_the_chapters_that_a_part_can_have(views: ProjectViews) -> None:
+    scope = replace(views.lookup.scope, components=frozenset({"human_state.fall_detector"}), selector_text="x")
+    lookup = replace_frozen(views.lookup, scope=scope)
+    outline = make_deliverable(lookup, replace_frozen(views.edition, document="deliverable"))
+    titles = [section.title for section in outline.sections]
+    assert "Chains of effect" not in titles
+    assert "Between partners" in titles
+    assert [len(each) for each in number_sheets(lookup).values()] == [1]
