@@ -25,6 +25,8 @@ import pytest
 QUICK_START = ("-XX:TieredStopAtLevel=1", "-XX:+UseSerialGC")
 """Options of Java for judges that run some seconds: optimising their code costs more than it saves (12 s instead of 6 for 170 pages)."""
 JUDGES_FOLDER = Path(__file__).parent / "judges"
+_JUDGE_SECONDS = 800
+"""Sooner than pytest ends the whole process (`faulthandler_timeout`): the test that waits fails, and says for what."""
 _PACKAGES_OF_NPM = JUDGES_FOLDER / "node_modules"
 TOOL_MARKS = ("browser", "office", "compilers", "judges", "ros")
 """The marks of tests that ask programs from outside."""
@@ -88,7 +90,7 @@ def run_judge(
     """Run a program that judges or builds; where it ends with another status, its own words are shown."""
     words = [str(word) for word in command]
     done = subprocess.run(  # noqa: S603 - judges of our own choice
-        words, cwd=cwd, env=env, input=stdin, capture_output=True, text=True, check=False, timeout=6000
+        words, cwd=cwd, env=env, input=stdin, capture_output=True, text=True, check=False, timeout=_JUDGE_SECONDS
     )
     said = f"{' '.join(words)[:300]} ended with {done.returncode}:\n{done.stdout}{done.stderr}"
     assert done.returncode in statuses, said

@@ -110,7 +110,7 @@ def test_the_rover_moves(rover: Path) -> None:
         # A node in Python may sleep on after a signal (see `interrupt_node`): the next one ends it.
         subprocess.run(["pkill", "-TERM", "-P", str(started.pid)], check=False)  # noqa: S603, S607
     started.kill()
-    output, errors = started.communicate()
+    output, errors = started.communicate(timeout=60)
     assert started.returncode == 0, errors
     places = [(line.index(mark), mark) for line in output.splitlines() for mark in "<>" if mark in line]
     assert len(places) == 32

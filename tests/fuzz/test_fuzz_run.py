@@ -40,6 +40,21 @@ def start_fuzz(work: Path, *words: str, python: str = sys.executable) -> subproc
         return subprocess.CompletedProcess(command, done.returncode, output.read(), errors.read())
 
 
+def describe_faults(work: Path, done: subprocess.CompletedProcess[str]) -> str:
+    """Return what a run counted where something broke, and where and at which input it did."""
+    counted = [line for line in done.stdout.splitlines() if " 0 faults" not in line]
+    errors = [
+        f"{file.stem}, at {file.with_suffix('').read_bytes()!r}:\n{file.read_text()}"
+        for file in sorted((work / "found").glob("*.txt"))
+    ]
+    unended = [
+        f"{file.stem} came to no end:\n{file.read_text(errors='replace')[-2000:]}"
+        for file in sorted((work / "counts").glob("*.log"))
+        if not file.with_suffix(".json").exists()
+    ]
+    return "\n".join((*counted, *errors, *unended, done.stderr[-2000:]))
+
+
 def test_a_process_that_waits_for_ever_is_ended() -> None:
     waiting = subprocess.Popen([sys.executable, "-c", "import time; time.sleep(600)"])
     run_fuzz.wait_for(waiting.pid, 0.05)
@@ -51,7 +66,7 @@ def test_a_process_that_waits_for_ever_is_ended() -> None:
 def test_a_minute_finds_nothing(tmp_path: Path) -> None:
     python = str(FUZZ_PYTHON) if FUZZ_PYTHON.exists() else sys.executable
     done = start_fuzz(tmp_path, "--seconds", "60", python=python)
-    assert done.returncode == 0, done.stdout[-3000:] + done.stderr[-2000:]
+    assert done.returncode == 0, describe_faults(tmp_path, done)
     counts = {file.stem: json.loads(file.read_text()) for file in (tmp_path / "counts").glob("*.json")}
     assert set(counts) == {target.name for target in list_targets()}
     assert all(count["inputs"] for count in counts.values())
