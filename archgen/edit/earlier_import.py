@@ -13,6 +13,7 @@ from pathlib import Path
 from typing import Any
 
 from archgen.diagnostics.diagnostic import Diagnostic, Severity
+from archgen.diagnostics.safe_text import make_visible
 from archgen.diagnostics.source_span import NO_SPAN
 from archgen.frozen import NamedTuple, dataclass
 from archgen.merge.slice_merge import SliceVersions, merge_slices
@@ -49,7 +50,7 @@ class ImportOrigin:
     @property
     def header(self) -> str:
         """Return the first line of each slice."""
-        names = " ".join(" ".join(word.split()) for word in (*self.file_names, *self.arguments))
+        names = make_visible(" ".join(" ".join(word.split()) for word in (*self.file_names, *self.arguments)))
         return f"# From {names}{_BY}{self.format_name}`; with --merge it is brought up to date.\n"
 
     def is_of(self, text: str) -> bool:

@@ -8,7 +8,7 @@ import json
 import re
 from collections.abc import Iterator, Mapping, Sequence
 
-from archgen.diagnostics.safe_text import replace_surrogates
+from archgen.diagnostics.safe_text import make_visible, replace_surrogates
 
 ElementPath = tuple[str | int, ...]
 
@@ -44,7 +44,8 @@ def write_yaml(data: Mapping[str, object], comments: Mapping[ElementPath, str] |
 
     `comments` puts `# text` behind the line on which the element at a path (keys and list positions) begins.
     """
-    return "\n".join(_write_mapping(data, "", (), comments or {})) + "\n" if data else "{}\n"
+    one_line_comments = {path: make_visible(text) for path, text in (comments or {}).items()}
+    return "\n".join(_write_mapping(data, "", (), one_line_comments)) + "\n" if data else "{}\n"
 
 
 def _write_mapping(

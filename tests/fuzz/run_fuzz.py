@@ -60,6 +60,8 @@ PROCESSOR_SECONDS = 10
 _ENDING_SECONDS = 150
 """What the process of one target may take beside the time to feed it: libFuzzer itself ends an input after 100 s."""
 MEMORY_BYTES = 1_000_000_000
+INPUTS_FILE = Path(__file__).with_name("inputs.json")
+"""How many inputs of each target a test takes: about those of a minute. A minute itself would be another run each time."""
 _MEMORY_FOLDER = "/dev/shm"  # noqa: S108 - whose folders below it are our own
 MAX_BYTES = 20_000
 """An input is no larger: what takes long although it is small is what is looked for."""
@@ -126,14 +128,18 @@ def _name_place(error: BaseException) -> str:
 class FuzzRun:
     """What is done with each input of one target, and what is counted."""
 
-    def __init__(self, target: Target, work: Path, seed: int) -> None:
-        self.target, self.work = target, work
+    def __init__(self, target: Target, work: Path, seed: int, limit: int = 0) -> None:
+        self.target, self.work, self.limit = target, work, limit
         self.seeds = list(dict.fromkeys(seed for seed in target.list_seeds() if len(seed) <= MAX_BYTES))
         self.words = list_words(self.seeds)
         self.draw = random.Random(seed)  # noqa: S311 - the same inputs for the same seed
         self.base = work
         self.count = 0
         self.faults: dict[str, int] = {}
+
+    def is_over(self, begin: float, seconds: float) -> bool:
+        """Whether it has taken the inputs that it was to take, or the time that it has for them where these are not counted."""
+        return self.count >= self.limit if self.limit else time.monotonic() - begin > seconds
 
     def begin(self) -> None:
         """Make the folder of the inputs, in the process that reads them."""
@@ -216,10 +222,10 @@ def _minimise_files(paths: Sequence[Path]) -> int:
 def _feed_unguided(run: FuzzRun, seconds: float) -> None:
     begin = time.monotonic()
     for seed in run.seeds:
-        if time.monotonic() - begin > seconds / 2:
+        if run.is_over(begin, seconds / 2):
             break
         run.take_input(seed)
-    while time.monotonic() - begin < seconds:
+    while not run.is_over(begin, seconds):
         run.take_input(run.mutate(run.draw.choice(run.seeds), MAX_BYTES, run.draw.getrandbits(32)))
     run.write_counts(time.monotonic() - begin)
 
@@ -235,7 +241,7 @@ def _feed_guided(atheris: Any, run: FuzzRun, seconds: float, seed: int) -> NoRet
 
     def take_input(data: bytes) -> None:
         run.take_input(data)
-        if time.monotonic() - begin > seconds:
+        if run.is_over(begin, seconds):
             run.write_counts(time.monotonic() - begin)
             # libFuzzer's own end tells its counts, and takes them from what is on the terminal.
             os._exit(0)
@@ -319,6 +325,11 @@ def main(words: Sequence[str] | None = None) -> int:
     parser.add_argument("--seconds", type=float, default=600)
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--rounds", type=int, default=1, help="how often all targets have their turn")
+    parser.add_argument(
+        "--counted",
+        action="store_true",
+        help="feed as many inputs as tests/fuzz/inputs.json says, the same ones each time, not those of some seconds",
+    )
     parser.add_argument("--work", type=Path, default=Path(".make/fuzzed"))
     parser.add_argument("--minimise", type=Path, nargs="+", help="leave out of these inputs what they break without")
     parser.add_argument(
@@ -341,7 +352,8 @@ def main(words: Sequence[str] | None = None) -> int:
     _fork_templates()
     if given.replay:
         return _replay_corpus(targets, work)
-    runs = [FuzzRun(target, work, given.seed) for target in targets]
+    limits = json.loads(INPUTS_FILE.read_text(encoding="utf-8")) if given.counted else {}
+    runs = [FuzzRun(target, work, given.seed, limits.get(target.name, 0)) for target in targets]
     gc.collect()
     gc.freeze()  # what is imported stays: to look through it again and again would cost more than the inputs
     shares = sum(target.share for target in targets)

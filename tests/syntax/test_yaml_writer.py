@@ -36,6 +36,12 @@ def test_form() -> None:
     )
 
 
+def test_a_comment_stays_on_its_line_whatever_it_holds() -> None:
+    comments = {("a",): "only if \0\nb: injected\u2028c: injected\x1b"}
+    text = yaml_writer.write_yaml({"a": {"b": 1}}, comments)
+    assert text == "a:  # only if ␀␊b: injected\ufffdc: injected␛\n  b: 1\n"
+
+
 def test_comments_stand_behind_their_element() -> None:
     data = {"a": {"b": ["x", "z"]}, "t": "one\ntwo\n"}
     comments = {("a",): "first", ("a", "b", 1): "second", ("t",): "third"}
