@@ -254,6 +254,7 @@ def _feed_guided(atheris: Any, run: FuzzRun, seconds: float, seed: int) -> NoRet
         "-rss_limit_mb=0",
         "-timeout=100",
         "-len_control=0",
+        "-reload=0",  # or it would feed again what it has written, some time after
         f"-artifact_prefix={run.work}/found/{run.target.name}-stopped-",
     ]
     atheris.Setup(["fuzz", *options, str(corpus), str(first)], take_input, custom_mutator=run.mutate)
