@@ -149,7 +149,8 @@ def _suggest_definition(message: str, interfaces: Interfaces) -> str:
     package, kind, name = message.split("/")
     planned_hint = "if it is still to be defined, write `status: planned` at its type"
     if package in interfaces.project_packages:
-        return f"add its definition, `{package}/{kind}/{name}.{kind}`, to the others; {planned_hint}"
+        keys = "`fields`" if kind == "msg" else "`request` and `response`"
+        return f"add its definition, `{package}/{kind}/{name}.{kind}`, to the others, or say its {keys} at its type; {planned_hint}"
     return planned_hint
 
 

@@ -134,7 +134,7 @@ def test_unknown_message_of_the_project() -> None:
     assert [brief(diagnostic) for diagnostic in found] == [
         (
             "a.yaml:1:20 Plan: no action `demo_msgs/action/Planning` in `demo_msgs`, which the project defines "
-            "(add its definition, `demo_msgs/action/Planning.action`, to the others; if it is still to be defined, write "
+            "(add its definition, `demo_msgs/action/Planning.action`, to the others, or say its `request` and `response` at its type; if it is still to be defined, write "
             "`status: planned` at its type)"
         )
     ]
