@@ -671,9 +671,9 @@ OTHER_WORDS: Mapping[str, Mapping[str, str]] = {
         "medium": "protocol", "kind": "protocol",
     },
     "chain": {
-        "from": "through", "to": "through", "path": "through", "steps": "through", "elements": "through",
-        "components": "through", "nodes": "through", "via": "through", "hops": "through", "route": "through",
-        "latency": "deadline", "max_latency": "deadline", "budget": "deadline", "limit": "deadline",
+        "from": "through", "to": "through", "path": "through", "flow": "through", "steps": "through",
+        "elements": "through", "components": "through", "nodes": "through", "via": "through", "hops": "through",
+        "route": "through", "latency": "deadline", "max_latency": "deadline", "budget": "deadline", "limit": "deadline",
         "end_to_end": "deadline", "description": "title",
     },
     "partner": {

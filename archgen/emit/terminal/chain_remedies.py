@@ -6,6 +6,7 @@ from collections.abc import Iterator, Mapping
 from fractions import Fraction
 from typing import Any
 
+from archgen.diagnostics.common_wording import join_words
 from archgen.diagnostics.text_columns import TextRow, align_rows, format_section
 from archgen.emit.data import timing_json
 from archgen.timing.figures import figure_wording
@@ -73,7 +74,15 @@ def format_proposal(proposal: Proposal, width: int | None = None, *, shows_tried
         yield ""
     best = proposal.best
     if not best.changes:
-        yield "Nothing of what was tried is better than what is written: there is nothing to do."
+        yield "Nothing of what was tried is better than what is written."
+        unbounded = [
+            name for name in proposal.tried[0].late if all(tried.bounds[name] is None for tried in proposal.tried)
+        ]
+        if unbounded:
+            yield (
+                f"No bound in any of them: {join_words(unbounded)}. `archgen timing` says which figures are missing, "
+                "or what has more work than it can do."
+            )
         return
     yield f"Proposed: {best.words}."
     yield f"  {_describe_result(proposal, best)}"

@@ -92,4 +92,9 @@ def test_all_that_was_tried_is_a_table_and_the_best_is_marked() -> None:
         ),
     ]
     worse = list(chain_remedies.format_proposal(_propose([{"a": 120, "b": 90}, {"a": 110, "b": 101}])))
-    assert worse[-1] == "Nothing of what was tried is better than what is written: there is nothing to do."
+    assert worse[-1] == "Nothing of what was tried is better than what is written."
+    *_, nothing, missing = chain_remedies.format_proposal(_propose([{"a": None, "b": 120}, {"a": None, "b": 130}]))
+    assert nothing == worse[-1]
+    assert missing == (
+        "No bound in any of them: a. `archgen timing` says which figures are missing, or what has more work than it can do."
+    )
