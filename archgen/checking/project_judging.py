@@ -27,7 +27,7 @@ from archgen.findings import (
 from archgen.frozen import NamedTuple, replace
 from archgen.installed_plugins import RULES, list_entries
 from archgen.language.language_tables import PLAIN_SECTIONS
-from archgen.link.known_programs import find_unlike_programs
+from archgen.link.known_programs import find_shadowed_packages, find_unlike_programs
 from archgen.model.architecture import Architecture
 from archgen.timing.run_analysis import AnalysisMemory
 
@@ -67,6 +67,7 @@ def judge_merged_project(
         *error_aftermath.drop_aftermath(
             (
                 *analyses.check_architecture(architecture, analysis, rule_options, waiting_rules),
+                *find_shadowed_packages(architecture),
                 *find_unlike_programs(architecture),
                 *_judge_by_packages(architecture, rule_options),
             ),

@@ -5,7 +5,7 @@ from __future__ import annotations
 from archgen.link import linking_rules, slice_merging
 from archgen.link.declare.frame_declaration import DUPLICATE_FRAME
 from archgen.link.hint_checks import WRONG_HINT
-from archgen.link.known_programs import UNLIKE_PROGRAM
+from archgen.link.known_programs import SHADOWED_PACKAGE, UNLIKE_PROGRAM
 from archgen.link.named_files import MISSING_FILE
 from archgen.link.node_parameter_files import MISSING_PARAMETER_FILE
 from archgen.link.project_linking import link_project
@@ -22,6 +22,7 @@ RULES = (
     MISSING_PARAMETER_FILE,
     MISSING_VERIFICATION,
     WRONG_HINT,
+    SHADOWED_PACKAGE,
     UNLIKE_PROGRAM,
 )
 

@@ -20,8 +20,8 @@ from archgen.model.node import Endpoint, Node
 from archgen.project.library_reading import (
     choose_distro,
     index_shipped_programs,
+    list_shipped_packages,
     load_shipped_component_types,
-    read_distribution_table,
 )
 from archgen.syntax.yaml_tree import node_to_data
 
@@ -29,6 +29,11 @@ UNLIKE_PROGRAM = Rule(
     "unlike-program",
     Severity.WARNING,
     "A program has a name of its own for what it reads or sends, and the design another one, to which nothing remaps it.",
+)
+SHADOWED_PACKAGE = Rule(
+    "shadowed-package",
+    Severity.WARNING,
+    "A node is in a package that others publish, and nothing says that its program exists: code would be generated in its place.",
 )
 _VERBS = {"publishes": "publishes", "subscribes": "subscribes to", "serves": "serves", "calls": "calls"}
 
@@ -48,9 +53,9 @@ def find_unlike_programs(architecture: Architecture) -> Iterator[Diagnostic]:
     nodes = [
         node for node in architecture.nodes.values() if node.package and not node.observed and node.status != "adapted"
     ]
-    if not nodes or not read_distribution_table().packages.keys() & {node.package for node in nodes}:
-        return
     distro = choose_distro(architecture.distro)
+    if not nodes or not list_shipped_packages(distro) & {node.package for node in nodes}:
+        return
     types_by_program = index_shipped_programs(distro)
     endpoints: dict[str, list[Endpoint]] = defaultdict(list)
     for endpoint in architecture.endpoints:
@@ -62,6 +67,22 @@ def find_unlike_programs(architecture: Architecture) -> Iterator[Diagnostic]:
             component_type = _as_mapping(node_to_data(load_shipped_component_types(distro)[type_names[0]].value))
             ends = list(_list_ends(component_type, node))
             yield from _find_other_names(node, ends, endpoints[node.id], architecture.distro)
+
+
+def find_shadowed_packages(architecture: Architecture) -> Iterator[Diagnostic]:
+    """Yield nodes for which a package would be generated that hides the one of this name that the library knows."""
+    distro = choose_distro(architecture.distro)
+    for node in architecture.nodes.values():
+        if node.status is None and node.is_generated and node.package in list_shipped_packages(distro):
+            message = (
+                f"`archgen generate` would make the package `{node.package}` for `{node.id}`, and hide the one that ROS users "
+                "install under this name"
+            )
+            help_line = (
+                f"write `status: existing` at the node, and which program of `{node.package}` it runs (`executable`); "
+                "`status: planned` if you do write a package of this name"
+            )
+            yield Diagnostic(SHADOWED_PACKAGE.name, message, node.at, help=help_line, element=node.id)
 
 
 def _find_other_names(

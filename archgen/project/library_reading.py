@@ -235,17 +235,24 @@ def choose_distro(distro: str | None) -> str | None:
 
 
 @cache
+def list_shipped_packages(distro: str | None) -> frozenset[str]:
+    """Return the packages of a distribution of which the library knows programs."""
+    packages = read_distribution_table().packages
+    return frozenset(package for package, distros in packages.items() if distro in distros)
+
+
+@cache
 def load_shipped_component_types(distro: str | None) -> Mapping[str, MappingEntry]:
     """Return the component types that ship for a distribution, in normal form, by name; none for one that is not known.
 
     They are shared: nobody may change their trees.
     """
-    table = read_distribution_table()
+    packages = list_shipped_packages(distro)
     entries: dict[str, MappingEntry] = {}
-    for file, distros in table.files.items():
+    for file, distros in read_distribution_table().files.items():
         if distro in distros:
             for entry in parse_shipped_file(file):
-                if distro in table.packages[_get_node_text(entry.value, "package")]:
+                if _get_node_text(entry.value, "package") in packages:
                     entries[entry.key] = entry
     return MappingProxyType(dict(sorted(entries.items())))
 

@@ -31,6 +31,7 @@ def test_what_later_stages_rely_on_cannot_be_switched_off() -> None:
         "missing-picture": ("warning", False),
         "missing-file": ("warning", False),
         "missing-verification": ("warning", False),
+        "shadowed-package": ("warning", False),
         "unlike-program": ("warning", False),
         "missing-parameter-file": ("off", False),
         "wrong-hint": ("error", False),
