@@ -253,8 +253,15 @@ def load_shipped_component_types(distro: str | None) -> Mapping[str, MappingEntr
         if distro in distros:
             for entry in parse_shipped_file(file):
                 if _get_node_text(entry.value, "package") in packages:
-                    entries[entry.key] = entry
+                    entries[entry.key] = _say_that_it_exists(entry.change_keys({"node": _say_that_it_exists}))
     return MappingProxyType(dict(sorted(entries.items())))
+
+
+def _say_that_it_exists(entry: MappingEntry) -> MappingEntry:
+    """Return a type, or its node, with the status of what others have made: no program is generated for it."""
+    status = MappingEntry("status", entry.key_span, ScalarNode("existing", "existing", entry.key_span))
+    known_entries = entry.value.entries if isinstance(entry.value, MappingNode) else {}
+    return entry.with_entries({**known_entries, "status": status})
 
 
 @cache

@@ -145,7 +145,7 @@ def test_cards_and_lists_have_it(lookup: Lookup) -> None:
     columns, rows = list_element_rows(lookup, "start_up")
     listed = [dict(zip(columns, row, strict=True)) for row in rows]
     assert [row["id"] for row in listed][:3] == ["set_clock", "stage", "parcel_registry"]
-    assert (listed[6]["kind"], listed[6]["place"]) == ("container", "start_up.yaml:97:3")
+    assert (listed[6]["kind"], listed[6]["place"]) == ("container", "start_up.yaml:103:3")
     assert listed[4]["waits_for"] == "map_server"
 
 
