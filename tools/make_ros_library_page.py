@@ -1,4 +1,4 @@
-"""Write docs/ros_library.md and docs/ros_library_sources.md from ros_library/: the component types that ship, and their sources."""
+"""Write docs/ros_library.md from ros_library/: the component types that ship."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from pathlib import Path
 from archgen.link import mapping_values
 from archgen.model.known_interfaces import KNOWN_DISTROS
 from archgen.project.library_reading import load_shipped_component_types
-from archgen.project.shipped_sources import ShippedSource, list_type_facts, read_shipped_sources
+from archgen.project.shipped_sources import list_type_facts, read_shipped_sources
 from archgen.syntax.yaml_tree import MappingNode
 
 DOCS = Path(__file__).resolve().parent.parent / "docs"
@@ -43,23 +43,8 @@ it: a filter whose `odom0` is `odom/unfiltered` reads that topic, and has no inp
 `package` has the executable and the plug-in of a component, `node` is what the program calls its node where a launch file gives no name.
 Where distributions differ, a type stands here once for each form.
 
-Each executable, plug-in, name, port, operation and parameter was read at a line of a file of the package
-([Where it was read](ros_library_sources.md)); what was not found is not here. How many there are:
-"""
-SOURCES_OPENING = """\
-# Where the library of ROS packages was read
-
-Made by `tools/make_ros_library_page.py` from the data in `ros_library/sources/`.
-
-Each fact about a type of [the library](ros_library.md), which is its program, a port, its name, an operation or a parameter, has its source
-in `ros_library/sources/DISTRIBUTION.yaml`: the repository's address, the version, the commit with its date, what kind of text it is,
-the file and the line. `archgen explain ros.amcl --distro jazzy` shows them, and a test refuses a fact without. Kinds are `source text`
-(code, build files and configuration of the package), `documentation` (what its people wrote about it) and `recording` (of a running
-node; none so far).
-
-The version is the one that the distribution has released, as of ros/rosdistro 8468e88ccd of 2026-08-22. Where that was not at hand,
-an older one was read, and the released one stands behind it in brackets.
-
+Each executable, plug-in, name, port, operation and parameter was read at a line of a file of the package, which `archgen explain ros.amcl`
+shows: repository, version, commit, file and line (`ros_library/sources/` holds them). What was not found is not here. How many there are:
 """
 
 
@@ -79,23 +64,6 @@ def format_page() -> str:
     for row, distros in sorted(rows.items()):
         lines.append(f"| {' | '.join((*row, ', '.join(sorted(distros, key=_ORDER.index))))} |")
     return "\n".join(lines) + "\n"
-
-
-def format_sources_page() -> str:
-    """Return the text of the page of where each type was read."""
-    lines = ["| type | distribution | repository | version | date | kind | facts |", "|---|---|---|---|---|---|---|"]
-    sources = {distro: read_shipped_sources(distro) for distro in _ORDER}
-    for name in sorted({name for types in sources.values() for name in types}):
-        for distro in _ORDER:
-            lines += [_format_source(name, distro, source) for source in sources[distro].get(name, ())]
-    return SOURCES_OPENING + "\n".join(lines) + "\n"
-
-
-def _format_source(name: str, distro: str, source: ShippedSource) -> str:
-    repository = "/".join(source.address.split("/")[-2:])
-    version = source.version if source.version == source.released else f"{source.version} ({source.released})"
-    facts = sum(len(facts) for facts in source.files.values())
-    return f"| `{name}` | {distro} | [{repository}]({source.format_link()}) | {version} | {source.date} | {source.kind} | {facts} |"
 
 
 def _list_counts() -> Iterator[str]:
@@ -148,7 +116,6 @@ def _list_ports(body: MappingNode, side: str) -> Iterator[str]:
 
 PAGES: dict[Path, Callable[[], str]] = {
     DOCS / "ros_library.md": format_page,
-    DOCS / "ros_library_sources.md": format_sources_page,
 }
 
 
