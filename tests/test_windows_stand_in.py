@@ -11,6 +11,7 @@ import unicodedata
 from pathlib import Path
 
 import pytest
+import yaml
 
 from tests.determined_project import make_every_output_once, make_project, run_every_output
 from tests.repositories import repository
@@ -248,3 +249,32 @@ def test_a_folder_that_is_reached_by_a_link(tmp_path: Path) -> None:
     archgen_here("new", "component", "driving.planner", "-C", place / "robot", cwd=tmp_path / "private")
     archgen_here("build", place / "robot", "--only", "packed,site", "--no-history", "-o", place / "out", cwd=tmp_path)
     assert (tmp_path / "private/out/site/index.html").is_file()
+
+
+@pytest.mark.slow
+def test_what_the_workflow_does_on_windows_and_macos(tmp_path: Path) -> None:
+    """The steps of `ci.yml` as they stand there, but here."""
+    workflow = yaml.safe_load((ROOT / ".github/workflows/ci.yml").read_text(encoding="utf-8"))
+    (step,) = (each for each in workflow["jobs"]["systems"]["steps"] if each.get("name") == "What a user does first")
+    program = tmp_path / "bin/archgen"
+    program.parent.mkdir()
+    program.write_text(f'#!/bin/sh\nexec {sys.executable} -c "$CODE" "$@"\n', encoding="utf-8")
+    program.chmod(0o755)
+    environment = {
+        "CODE": f"{_TAKE_AWAY}\nfrom archgen.__main__ import main\nmain()",
+        "ARCHGEN_STAND_IN": _STAND_IN,
+        "PATH": f"{program.parent}:{os.environ['PATH']}",
+        "PYTHONPATH": str(ROOT),
+        "RUNNER_TEMP": str(tmp_path),
+        "GITHUB_WORKSPACE": str(ROOT),
+    }
+    done = subprocess.run(  # noqa: S603 - what stands in our own file
+        ["bash", "--noprofile", "--norc", "-eo", "pipefail", "-c", step["run"]],  # noqa: S607 - as a runner starts it
+        cwd=tmp_path,
+        env={**os.environ, **environment},
+        capture_output=True,
+        text=True,
+        check=False,
+        timeout=900,
+    )
+    assert done.returncode == 0, done.stdout + done.stderr
