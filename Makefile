@@ -98,7 +98,6 @@ pages: .make/test
 	$(BIN)/python tools/make_rule_pages.py
 	$(BIN)/python tools/make_ros_interfaces.py
 	$(BIN)/python tools/make_ros_library_page.py
-	$(BIN)/python tools/make_module_pages.py
 	$(BIN)/python tools/make_plugin_page.py
 
 lock:

@@ -65,6 +65,10 @@ def _run_verb() -> None:
     from archgen.installed_plugins import PluginRefusedError
 
     if isinstance(sys.stdout, io.TextIOWrapper):
+        if (
+            sys.platform == "win32" and not sys.stdout.isatty()
+        ):  # whoever reads a pipe or file there reads JSON, CSV, YAML
+            sys.stdout.reconfigure(encoding="utf-8")
         sys.stdout.reconfigure(errors="replace")  # where it is not UTF-8: a question mark instead of no output at all
     try:
         try:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import ast
+import json
 import re
 import subprocess
 from pathlib import Path
@@ -32,6 +33,20 @@ def robot(tmp_path: Path) -> Path:
         path.write_text(text.partition("\n")[2], "utf-8")
     (tmp_path / "archgen.yaml").write_text(PROJECT)
     return tmp_path
+
+
+@pytest.mark.parametrize(
+    "view", ["interfaces", "programs", "components", "plan", "structure", "ros2_launch", "middleware"]
+)
+def test_a_template_shows_all_of_a_view(run: Run, robot: Path, view: str) -> None:
+    """As the page says of those whose keys it does not list."""
+    folder = robot / "backends" / "all_of_it"
+    (folder / "templates").mkdir(parents=True)
+    manifest = f"id: all_of_it\ntitle: All\nmakes: workspace\nemitter: text\nview: {view}\nfiles: [{{template: a.j2, path: a.json}}]\n"
+    (folder / "backend.yaml").write_text(manifest)
+    (folder / "templates" / "a.j2").write_text(f"{{{{ {view}|tojson(2) }}}}\n")
+    assert run("generate", "all_of_it", "-C", robot, "-o", robot / "ws").status == 0
+    assert json.loads((robot / "ws/a.json").read_text())
 
 
 def test_the_generator_of_the_page(run: Run, robot: Path) -> None:

@@ -1,4 +1,4 @@
-"""Print what became of each construct of UML models, as tables of docs/uml_dialects.md.
+"""Print what became of each construct of UML models.
 
     python tools/count_uml_constructs.py MODEL...
 

@@ -1,4 +1,4 @@
-"""Write into docs/plugins.md what the plug-ins that ship say of themselves, and the names of archgen.plugin."""
+"""Write into docs/plugins.md what the plug-ins that ship and the modules of archgen.plugin say of themselves."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ _NO_PARTS = frozenset({"api", "page"})
 
 def renew_page(page: str) -> str:
     """Return the page with both tables as they are now."""
-    for mark, lines in (("shipped", _list_plugins()), ("names", _list_names())):
+    for mark, lines in (("shipped", _list_plugins()), ("subjects", _list_subjects())):
         table = "\n".join(lines)
         page = re.sub(rf"(?s)(<!-- {mark} -->\n).*?(<!-- end of {mark} -->)", rf"\g<1>{table}\n\g<2>", page)
     return page
@@ -38,13 +38,12 @@ def _list_plugins() -> Iterator[str]:
         yield f"| `{name}` | {(module.__doc__ or '').strip()} | {parts} | [{page}]({page}) |"
 
 
-def _list_names() -> Iterator[str]:
-    yield "| module | what it is for | names |"
-    yield "|---|---|---|"
+def _list_subjects() -> Iterator[str]:
+    yield "| module | what it is for |"
+    yield "|---|---|"
     for subject in list_subjects():
         module = importlib.import_module(f"archgen.plugin.{subject}")
-        names = ", ".join(f"`{name}`" for name in module.__all__)
-        yield f"| `archgen.plugin.{subject}` | {(module.__doc__ or '').strip()} | {names} |"
+        yield f"| `archgen.plugin.{subject}` | {(module.__doc__ or '').strip()} |"
 
 
 def list_subjects() -> list[str]:

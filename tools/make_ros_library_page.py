@@ -1,16 +1,18 @@
-"""Write docs/ros_library.md and docs/ros_library_sources.md from ros_library/: the component types that ship, and their sources."""
+"""Write docs/ros_library.md from ros_library/: the component types that ship."""
 
 from __future__ import annotations
 
 import sys
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Collection, Iterator, Mapping
 from pathlib import Path
 
 from archgen.link import mapping_values
-from archgen.model.known_interfaces import KNOWN_DISTROS
 from archgen.project.library_reading import load_shipped_component_types
-from archgen.project.shipped_sources import ShippedSource, list_type_facts, read_shipped_sources
+from archgen.project.shipped_sources import list_type_facts, read_shipped_sources
 from archgen.syntax.yaml_tree import MappingNode
+
+Form = tuple[tuple[str, ...], ...]
+"""What a type is in a distribution: the lines of the columns between its name and its distributions."""
 
 DOCS = Path(__file__).resolve().parent.parent / "docs"
 OPENING = """\
@@ -42,34 +44,19 @@ packages, and [asks](rules/shadowed-package.md) about other nodes that have one 
 An input with `?` is optional. Behind a port stands what the program calls it, where that is another name, and `by` the parameter that names
 it: a filter whose `odom0` is `odom/unfiltered` reads that topic, and has no input `odom1` on the robot where nobody gives that parameter.
 `package` has the executable and the plug-in of a component, `node` is what the program calls its node where a launch file gives no name.
-Where distributions differ, a type stands here once for each form.
+Where distributions differ, those stand in brackets in which it is so.
 
-Each executable, plug-in, name, port, operation and parameter was read at a line of a file of the package
-([Where it was read](ros_library_sources.md)); what was not found is not here. How many there are:
-"""
-SOURCES_OPENING = """\
-# Where the library of ROS packages was read
-
-Made by `tools/make_ros_library_page.py` from the data in `ros_library/sources/`.
-
-Each fact about a type of [the library](ros_library.md), which is its program, a port, its name, an operation or a parameter, has its source
-in `ros_library/sources/DISTRIBUTION.yaml`: the repository's address, the version, the commit with its date, what kind of text it is,
-the file and the line. `archgen explain ros.amcl --distro jazzy` shows them, and a test refuses a fact without. Kinds are `source text`
-(code, build files and configuration of the package), `documentation` (what its people wrote about it) and `recording` (of a running
-node; none so far).
-
-The version is the one that the distribution has released, as of ros/rosdistro 8468e88ccd of 2026-08-22. Where that was not at hand,
-an older one was read, and the released one stands behind it in brackets.
-
+Each executable, plug-in, name, port, operation and parameter was read at a line of a file of the package, which `archgen explain ros.amcl`
+shows: repository, version, commit, file and line (`ros_library/sources/` holds them). What was not found is not here. How many there are:
 """
 
 
 def format_page() -> str:
     """Return the text of the page of all types."""
-    rows: dict[tuple[str, ...], list[str]] = {}
-    for distro in KNOWN_DISTROS:
+    forms: dict[str, dict[str, Form]] = {}
+    for distro in _ORDER:
         for name, entry in load_shipped_component_types(distro).items():
-            rows.setdefault(_format_row(name, mapping_values.get_body(entry)), []).append(distro)
+            forms.setdefault(name, {})[distro] = _describe_form(mapping_values.get_body(entry))
     lines = [
         OPENING,
         *_list_counts(),
@@ -77,26 +64,30 @@ def format_page() -> str:
         "| type | what it does | inputs | outputs | package | node | distributions |",
         "|---|---|---|---|---|---|---|",
     ]
-    for row, distros in sorted(rows.items()):
-        lines.append(f"| {' | '.join((*row, ', '.join(sorted(distros, key=_ORDER.index))))} |")
+    for name, form_by_distro in sorted(forms.items()):
+        columns = [_merge_column(column, form_by_distro) for column in range(5)]
+        lines.append(f"| `{name}` | {' | '.join(columns)} | {_name_distros(form_by_distro)} |")
     return "\n".join(lines) + "\n"
 
 
-def format_sources_page() -> str:
-    """Return the text of the page of where each type was read."""
-    lines = ["| type | distribution | repository | version | date | kind | facts |", "|---|---|---|---|---|---|---|"]
-    sources = {distro: read_shipped_sources(distro) for distro in _ORDER}
-    for name in sorted({name for types in sources.values() for name in types}):
-        for distro in _ORDER:
-            lines += [_format_source(name, distro, source) for source in sources[distro].get(name, ())]
-    return SOURCES_OPENING + "\n".join(lines) + "\n"
+def _merge_column(column: int, form_by_distro: Mapping[str, Form]) -> str:
+    """Return what a type has in a column, and behind what it has not in all of its distributions where it has it."""
+    distros_by_line: dict[str, list[str]] = {}
+    for distro, form in reversed(tuple(form_by_distro.items())):  # the newest first
+        for line in form[column]:
+            distros_by_line.setdefault(line, []).append(distro)
+    return "<br>".join(
+        line if len(distros) == len(form_by_distro) else f"{line} ({_name_distros(distros)})"
+        for line, distros in distros_by_line.items()
+    )
 
 
-def _format_source(name: str, distro: str, source: ShippedSource) -> str:
-    repository = "/".join(source.address.split("/")[-2:])
-    version = source.version if source.version == source.released else f"{source.version} ({source.released})"
-    facts = sum(len(facts) for facts in source.files.values())
-    return f"| `{name}` | {distro} | [{repository}]({source.format_link()}) | {version} | {source.date} | {source.kind} | {facts} |"
+def _name_distros(distros: Collection[str]) -> str:
+    """Return distributions in their order; of three or more that follow one another the first and the last one."""
+    places = sorted(map(_ORDER.index, distros))
+    if len(places) not in {1, 2} and places[-1] - places[0] == len(places) - 1:
+        return f"{_ORDER[places[0]]} to {_ORDER[places[-1]]}"
+    return ", ".join(_ORDER[place] for place in places)
 
 
 def _list_counts() -> Iterator[str]:
@@ -112,17 +103,17 @@ def _list_counts() -> Iterator[str]:
 _ORDER = ("noetic", "humble", "jazzy", "kilted", "lyrical", "rolling")
 
 
-def _format_row(name: str, body: MappingNode) -> tuple[str, ...]:
+def _describe_form(body: MappingNode) -> Form:
     node = mapping_values.get_mapping(body, "node")
     package, executable = (mapping_values.get_text(node, key) for key in ("package", "executable"))
     plugin, own_name = (mapping_values.get_text(node, key) for key in ("plugin", "own_name"))
+    programs = (f"{package}, `{executable}`" if executable else package or "", f"`{plugin}`" if plugin else "")
     return (
-        f"`{name}`",
-        mapping_values.get_text(body, "functionality") or "",
-        "<br>".join(_list_ports(body, "inputs")),
-        "<br>".join(_list_ports(body, "outputs")),
-        (f"{package}, `{executable}`" if executable else package or "") + (f"<br>`{plugin}`" if plugin else ""),
-        f"`{own_name}`" if own_name else "",
+        (mapping_values.get_text(body, "functionality") or "",),
+        tuple(_list_ports(body, "inputs")),
+        tuple(_list_ports(body, "outputs")),
+        tuple(filter(None, programs)),
+        (f"`{own_name}`",) if own_name else (),
     )
 
 
@@ -149,7 +140,6 @@ def _list_ports(body: MappingNode, side: str) -> Iterator[str]:
 
 PAGES: dict[Path, Callable[[], str]] = {
     DOCS / "ros_library.md": format_page,
-    DOCS / "ros_library_sources.md": format_sources_page,
 }
 
 

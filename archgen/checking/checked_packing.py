@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
+
 from archgen.checking.checked_project import CheckedProject
 from archgen.checking.interface_loading import read_interface_files
 from archgen.link import interface_sources
@@ -13,13 +15,17 @@ def pack_checked_project(checked_project: CheckedProject) -> PackedProject:
     texts, _ = read_interface_files(checked_project.loaded_project)
     judged_variants = tuple(checked_project.variants.values())
     attachments = PackedAttachments(
-        {name: text for file, text in texts.items() if (name := interface_sources.interface_name_of(file))},
-        {path: chapter.text for path, chapter in checked_project.chapters.texts.items()},
-        checked_project.chapters.read_pictures(),
+        _end_lines_alike(
+            (name, text) for file, text in texts.items() if (name := interface_sources.interface_name_of(file))
+        ),
+        _end_lines_alike((path, chapter.text) for path, chapter in checked_project.chapters.texts.items()),
         {
-            **checked_project.packed_parameters,
-            **{k: t for each in judged_variants for k, t in each.packed_parameters.items()},
+            path: data.replace(b"\r\n", b"\n") if path.endswith(".svg") else data
+            for path, data in checked_project.chapters.read_pictures().items()
         },
+        _end_lines_alike(
+            item for each in (checked_project, *judged_variants) for item in each.packed_parameters.items()
+        ),
     )
     ignores = [ignore for file_ignores in checked_project.loaded_project.ignores.values() for ignore in file_ignores]
     silenced_lines = {(each.span.file, each.span.line) for each in checked_project.silenced_findings}
@@ -42,6 +48,11 @@ def pack_checked_project(checked_project: CheckedProject) -> PackedProject:
     )
     _add_origin_comments(packed_project, checked_project)
     return packed_project
+
+
+def _end_lines_alike(texts: Iterable[tuple[str, str]]) -> dict[str, str]:
+    """Return texts of files as every system has them: where git checks them out for Windows, their lines end in two characters."""
+    return {name: text.replace("\r\n", "\n") for name, text in texts}
 
 
 def _add_origin_comments(packed_project: PackedProject, checked_project: CheckedProject) -> None:

@@ -38,5 +38,7 @@ def find_asked_files(paths: tuple[Path, ...], project: Path | None) -> tuple[Pat
 
 def name_files(checked_project: CheckedProject, files: Iterable[Path]) -> dict[str, Path]:
     """Return files by what the project calls them: their path below its folder."""
+    from archgen.project.project_search import name_path_from
+
     root = os.path.realpath(checked_project.root)
-    return {os.path.relpath(os.path.realpath(file), root).replace(os.sep, "/"): file for file in files}
+    return {name_path_from(root, os.path.realpath(file)): file for file in files}

@@ -16,6 +16,7 @@ from archgen.diagnostics.source_span import Span
 from archgen.edit.earlier_import import read_plain_mapping
 from archgen.merge.record_merge import SOURCE_FOLDER
 from archgen.pipeline import CheckedProject
+from archgen.project.project_search import name_path_from
 from archgen.regular_files import read_named_file
 from archgen.syntax.project_files import read_text_file
 from archgen.syntax.yaml_writer import write_yaml
@@ -64,7 +65,7 @@ def _walk(top: Path, without: Path) -> Iterator[tuple[Path, int]]:
 def write_source_records(root: Path, slices: Iterable[str], files: Sequence[Path]) -> dict[str, str]:
     """Return by their paths in a project the records that say from where its slices come, and what is there now."""
     paths = [file.resolve() for file in files]
-    names = [Path(os.path.relpath(path, root)).as_posix() for path in paths]
+    names = [name_path_from(root, path) for path in paths]
     text = write_yaml({"files": names, "digest": digest_sources(paths, root)})
     return {f"{SOURCE_FOLDER}/{file}": text for file in slices}
 

@@ -4,11 +4,12 @@ folder, and its letters come with it: on other computers figures would be ragged
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 
 from archgen.emit import file_tree
 from archgen.emit.font_subset import embed_fonts
 from archgen.emit.picture import Picture
+from archgen.emit.safe_names import assign_safe_paths, is_safe_path
 from archgen.emit.site import page_pictures as drawing
 from archgen.views.shapes import split_anchor
 
@@ -21,15 +22,23 @@ def build_picture_tree(pictures: Mapping[str, Picture], formats: Sequence[str]) 
     left out.
     """
     style = embed_fonts(picture.svg for picture in pictures.values() if picture.svg) if "svg" in formats else ""
+    paths = _name_files(pictures)
     files = (
-        (f"{name}.{form}", _picture_bytes(picture, form, pictures, style))
+        (f"{paths[name]}.{form}", _picture_bytes(picture, form, paths, style))
         for name, picture in pictures.items()
         for form in formats
     )
     return file_tree.make_file_tree((path, data) for path, data in files if data is not None)
 
 
-def _picture_bytes(picture: Picture, format_name: str, pictures: Mapping[str, Picture], style: str) -> bytes | None:
+def _name_files(names: Collection[str]) -> Mapping[str, str]:
+    """Return the paths of pictures without their endings: their names, unless some system would not take one, or two are one to it."""
+    if all(map(is_safe_path, names)) and len(set(map(str.casefold, names))) == len(names):
+        return {name: name for name in names}
+    return assign_safe_paths(names)
+
+
+def _picture_bytes(picture: Picture, format_name: str, paths: Mapping[str, str], style: str) -> bytes | None:
     if format_name == "dot":
         return picture.dot.encode()
     # The fields of Picture are called as the formats are.
@@ -41,6 +50,6 @@ def _picture_bytes(picture: Picture, format_name: str, pictures: Mapping[str, Pi
     def href(anchor: str) -> str | None:
         kind, name = split_anchor(anchor)
         target = f"{_FOLDER_BY_KIND.get(kind, kind)}/{name}"
-        return f"{prefix}{target}.svg" if target in pictures and target != picture.id else None
+        return f"{prefix}{paths[target]}.svg" if target in paths and target != picture.id else None
 
     return drawing.standalone_svg(data, href, style)

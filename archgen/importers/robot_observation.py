@@ -12,6 +12,7 @@ from archgen.diagnostics.source_span import Span
 from archgen.frozen import dataclass, field, replace
 from archgen.importers.foreign_import import ForeignFileError
 from archgen.installed_plugins import list_shipped_facts, load_shipped_object
+from archgen.project.project_search import name_path_from
 
 
 @dataclass(frozen=True, slots=True)
@@ -35,7 +36,7 @@ def observe_robot(path: Path, root: Path, options: ObservationOptions, kinds: Co
         robot: ObservedRobot | None = load_shipped_object(facts["reader"])(path, options)
         if robot is not None:
             folder = path if path.is_dir() else path.parent
-            return _move_places(robot, os.path.relpath(folder.resolve(), root.resolve()))
+            return _move_places(robot, name_path_from(root.resolve(), folder.resolve()))
     known = (
         "; ".join(facts["summary"] for _, _, facts in observers) or "none: the plug-ins that read them are taken out"
     )

@@ -10,7 +10,7 @@ from pathlib import Path
 from pygls import uris
 
 from archgen.live.edited_project import EditedProject
-from archgen.project.project_search import PROJECT_FILE, ProjectNotFoundError
+from archgen.project.project_search import PROJECT_FILE, ProjectNotFoundError, name_path_from
 from archgen.syntax.file_patterns import is_yaml_name
 
 _OWN_PROJECT = re.compile(r"^archgen[ \t]*+:", re.MULTILINE)
@@ -91,7 +91,7 @@ class OpenProjects:
 
 def name_file(project: EditedProject, path: Path) -> str:
     """Return what a project calls a file: its path from the project's folder."""
-    return os.path.relpath(path, project.warm.root).replace(os.sep, "/")
+    return name_path_from(project.warm.root, path)
 
 
 def _find_path(uri: str) -> Path | None:

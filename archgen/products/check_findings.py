@@ -17,6 +17,7 @@ from archgen.diagnostics.finding_identity import BaselineEntry, IdRenamer, ident
 from archgen.frozen import dataclass, replace
 from archgen.pipeline import CheckedProject, VersionCache, index_all_rules
 from archgen.project import baseline_reading as reading
+from archgen.project.project_search import name_path_from
 
 if TYPE_CHECKING:
     from archgen.model.architecture import Architecture
@@ -230,7 +231,7 @@ def _read_baseline(
 
 def _path_in_project(checked_project: CheckedProject, baseline_file: Path) -> str:
     """Return the path of the baseline relative to the project's folder, as paths are shown in findings."""
-    return Path(os.path.relpath(baseline_file.absolute(), checked_project.root.absolute())).as_posix()
+    return name_path_from(checked_project.root.absolute(), baseline_file.absolute())
 
 
 _FILE_HEADER = """\

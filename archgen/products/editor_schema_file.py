@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-import os
 import posixpath
 from pathlib import Path
 
@@ -14,6 +13,7 @@ from archgen.findings.rule_pages import summarise_rule
 from archgen.pipeline import CheckedProject, index_all_rules
 from archgen.products import editor_schema_marks
 from archgen.products.product_writing import write_product_file
+from archgen.project.project_search import name_path_from
 from archgen.regular_files import holds_bytes
 from archgen.views.offered_names import OfferedNames
 
@@ -61,7 +61,7 @@ def write_schema(checked_project: CheckedProject, target: Path | None = None) ->
 def explain_set_up(checked_project: CheckedProject, path: Path) -> str | None:
     """Return what is still to be done so that editors find a schema that was written; None if nothing is."""
     root = checked_project.root
-    address = os.path.relpath(path, root).replace(os.sep, "/")
+    address = name_path_from(root, path)
     schema_lines = {
         file: match[1]
         for file in checked_project.yaml_files

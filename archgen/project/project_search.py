@@ -51,6 +51,14 @@ def find_project_of_slice(file: Path) -> Path | None:
     return None if re.search(r"^archgen[ \t]*+:", text, re.MULTILINE) else folder
 
 
+def name_path_from(folder: Path | str, path: Path | str) -> str:
+    """Return the way from a folder to a path, with `/`; the whole path where there is no way, as between drives of Windows."""
+    try:
+        return Path(os.path.relpath(path, folder)).as_posix()
+    except ValueError:
+        return Path(os.path.abspath(path)).as_posix()  # noqa: PTH100 - no link is followed
+
+
 def _find_folder_around(folder: Path) -> Path | None:
     return next((each for each in (folder, *folder.parents) if os.path.lexists(each / PROJECT_FILE)), None)
 

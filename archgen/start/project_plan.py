@@ -161,8 +161,7 @@ def _fill_project_file(answers: StartAnswers, data: Mapping[str, Any]) -> bytes:
     sections = block_documents.BlockMapping()
     for key, hint in _SECTION_HINTS.items():
         if key in data:
-            # In the column of the template's own comments.
-            section = sections.add_mapping(key, f"{hint:>{len(hint) + 28 - len(key)}}", is_spaced=True)
+            section = sections.add_mapping(key, hint, is_spaced=True)
             for name, value in data[key].items():
                 section.add_entry(name, value)
     project_file = start_templates.fill_project_file(answers)

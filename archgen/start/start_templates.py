@@ -22,8 +22,8 @@ _PLAIN_PATH_PATTERN = re.compile(r"[A-Za-z0-9._/-]+\Z")
 """Folders without characters that have a meaning in a workflow's path filter."""
 _RUN_GROUP = "${{ github.event_name == 'pull_request' && github.ref || github.run_id }}"
 PORT_HINTS = {
-    "inputs": "                      # where the data comes from: group.component.output",
-    "outputs": "                     # what it gives: a conceptual type each",
+    "inputs": "  # where the data comes from: group.component.output",
+    "outputs": "  # what it gives: a conceptual type each",
 }
 
 

@@ -6,6 +6,7 @@ Not `pathlib.glob`: a project may lie in a commit, and some folders are never se
 from __future__ import annotations
 
 import re
+import unicodedata
 from itertools import compress
 from pathlib import PurePosixPath
 from typing import TYPE_CHECKING
@@ -45,13 +46,11 @@ def expand_pattern(files: ProjectFiles, pattern: str, skipped_folders: frozenset
     parts = PurePosixPath(pattern).parts
     # The part before the first wildcard is walked to directly; without any wildcard the pattern is a path.
     fixed_count = next((i for i, part in enumerate(parts) if _WILDCARD.search(part)), len(parts))
-    prefix = "/".join(parts[:fixed_count])
+    prefix = _find_spelling(files, "/".join(parts[:fixed_count]))
     if fixed_count == len(parts):
         return (prefix,) if files.has_path(prefix) else ()
     path_pattern = _compile_path(parts[fixed_count:])
-    matching_names = (
-        name for name in _walk_files(files, prefix, skipped_folders) if _matches_path(path_pattern, name.split("/"))
-    )
+    matching_names = (name for name in _walk_files(files, prefix, skipped_folders) if _matches_path(path_pattern, name))
     # Sorted name by name, not as strings: `a/b` comes before `a-b/c`, as in a listing of folders, and g2 before g10.
     return tuple(
         sorted(
@@ -91,7 +90,14 @@ def is_yaml_name(name: str) -> bool:
 
 def matches_pattern(pattern: str, file: str) -> bool:
     """Whether a pattern matches a path, whether or not the file exists."""
-    return is_inside_project(pattern) and _matches_path(_compile_path(PurePosixPath(pattern).parts), file.split("/"))
+    return is_inside_project(pattern) and _matches_path(_compile_path(PurePosixPath(pattern).parts), file)
+
+
+def _find_spelling(files: ProjectFiles, path: str) -> str:
+    """Return a path as the disk has it: macOS may hold letters with accents in another form of Unicode than people type."""
+    if path.isascii() or files.has_path(path):
+        return path
+    return next((each for form in ("NFD", "NFC") if files.has_path(each := unicodedata.normalize(form, path))), path)
 
 
 def _walk_files(
@@ -121,15 +127,19 @@ def _walk_files(
 def _compile_path(parts: tuple[str, ...]) -> tuple[re.Pattern[str] | None, ...]:
     """Return one expression for each name of a pattern, None for `**`. A last `**` stands for one name at least."""
     names = (*parts, "*") if parts[-1:] == ("**",) else parts
-    return tuple(None if part == "**" else re.compile(_name_to_regex(part), re.DOTALL) for part in names)
+    return tuple(
+        None if part == "**" else re.compile(_name_to_regex(unicodedata.normalize("NFC", part)), re.DOTALL)
+        for part in names
+    )
 
 
-def _matches_path(path_pattern: tuple[re.Pattern[str] | None, ...], names: list[str]) -> bool:
-    """Whether the names of a path match, `**` standing for any number of them.
+def _matches_path(path_pattern: tuple[re.Pattern[str] | None, ...], path: str) -> bool:
+    """Whether the names of a path match, `**` standing for any number of them, in whatever form of Unicode.
 
     Only the last `**` is ever widened: what an earlier one could still take, a later one can take as well. So the time
     is bounded by the product of both lengths; one regular expression for the whole path takes exponential time.
     """
+    names = unicodedata.normalize("NFC", path).split("/")
     position, index = 0, 0
     widened_position, widened_index = -1, 0
     while index < len(names):

@@ -46,6 +46,14 @@ def test_without_a_terminal_it_asks_nothing_and_checks_clean(run: Run, tmp_path:
 
 
 @pytest.mark.parametrize(
+    "words", ["", "--partner a=A --partner b=B --group g=a --group h=b", "--empty", "--distro noetic"]
+)
+def test_its_files_have_the_one_style(run: Run, tmp_path: Path, words: str) -> None:
+    run("init", tmp_path / "robot", *words.split())
+    assert run("fmt", "-C", tmp_path / "robot", "--check").status == 0
+
+
+@pytest.mark.parametrize(
     ("name", "title"), [("my-Robot", None), ("2nd robot", 'A: "b" #c'), ("größer", "yes"), ("機械", "${{ x }} [[ y ]]")]
 )
 def test_any_name_and_title_checks_clean(name: str, title: str | None, run: Run, tmp_path: Path) -> None:

@@ -2,16 +2,20 @@
 
 from __future__ import annotations
 
+import hashlib
 import os
 import stat
 import unicodedata
-from collections.abc import Iterable, Iterator
+from collections.abc import Collection, Iterable, Iterator
 from functools import lru_cache
 from pathlib import Path
 
 from archgen.emit.file_tree import digest_named_file, list_files_below
 from archgen.emit.safe_names import explain_long_path, is_safe_path
 from archgen.frozen import dataclass
+
+_MAX_TEXT_BYTES = 16_000_000
+"""A larger file is no text whose ends of lines git changes."""
 
 _MAX_PART_BYTES = 200
 """What every file system takes as one name, with room for what other tools append."""
@@ -101,11 +105,17 @@ class DiskFile:
     mode: int = 0
     obstacle: str = ""
     obstacle_path: str = ""
+    digest_with_line_feeds: str | None = None
+    """That of the file as archgen writes lines, where they end as on Windows: git does so there when it checks out."""
 
     @property
     def exists(self) -> bool:
         """Whether there is a plain file."""
         return self.digest is not None
+
+    def has_digest(self, digests: Collection[str]) -> bool:
+        """Whether the file has one of these digests, but for the ends of its lines."""
+        return self.digest in digests or self.digest_with_line_feeds in digests
 
 
 class DiskReader:
@@ -134,7 +144,13 @@ class DiskReader:
         digest = digest_named_file(name, status.st_size) if stat.S_ISREG(status.st_mode) else None
         if digest is None:
             return DiskFile(obstacle="is no plain file", obstacle_path=path)
-        return DiskFile(digest, stat.S_IMODE(status.st_mode))
+        return DiskFile(
+            digest, stat.S_IMODE(status.st_mode), digest_with_line_feeds=self._end_lines_alike(path, status.st_size)
+        )
+
+    def _end_lines_alike(self, path: str, size: int) -> str | None:
+        data = self.read_data(path) if size <= _MAX_TEXT_BYTES else b""
+        return hashlib.sha256(data.replace(b"\r\n", b"\n")).hexdigest() if b"\r\n" in data else None
 
     def read_data(self, path: str) -> bytes:
         """Return the bytes of a file that is there."""

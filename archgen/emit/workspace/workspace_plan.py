@@ -139,11 +139,11 @@ class _Planner:
             self.entries[path] = replace(entry, runs=other_runs)
             return
         on_disk = self.disk.read(path)
-        if on_disk.exists and entry.is_own and not (entry.once and on_disk.digest in entry.digests):
+        if on_disk.exists and entry.is_own and not (entry.once and on_disk.has_digest(entry.digests)):
             self._outlived[path] = entry
         elif on_disk.exists and path in self.choices.kept:
             self.steps.append(FileStep(path, "left", "it is no longer made, and kept: it is yours now"))
-        elif on_disk.digest in entry.digests or (on_disk.exists and self._is_merged(path, entry)):
+        elif on_disk.has_digest(entry.digests) or (on_disk.exists and self._is_merged(path, entry)):
             self.removals.append(path)
             self.steps.append(FileStep(path, "removed"))
         elif on_disk.exists:
@@ -162,13 +162,13 @@ class _Planner:
         elif not on_disk.exists:
             self._write(file, entry, digest, on_disk, "new")
         elif self._is_users_own(file, entry):
-            is_empty = entry is not None and on_disk.digest in entry.digests
+            is_empty = entry is not None and on_disk.has_digest(entry.digests)
             self._keep_own(file, entry, digest, on_disk, is_empty=is_empty)
         elif file.path in self.choices.kept and not (entry and file.path in self.choices.overwritten):
             self._keep_own(file, entry, digest, on_disk)
-        elif on_disk.digest == digest:
+        elif on_disk.has_digest({digest}):
             self._keep_same(file, entry, digest, on_disk)
-        elif on_disk.digest in self.known_digests[fold_file_path(file.path)] or (
+        elif on_disk.has_digest(self.known_digests[fold_file_path(file.path)]) or (
             entry and file.path in self.choices.overwritten
         ):
             self._write(file, entry, digest, on_disk, "changed")
@@ -282,7 +282,7 @@ class _Planner:
         """
         known = self.old_record.files.get(entry.successor)
         if known and entry.successor in self.wanted_paths:
-            return entry.successor if self.disk.read(entry.successor).digest in known.digests else ""
+            return entry.successor if self.disk.read(entry.successor).has_digest(known.digests) else ""
         likeness = {
             each: (
                 len(self.entries[each].meanings.keys() & entry.meanings.keys()),
