@@ -171,7 +171,7 @@ def _print_result(result: WorkspaceResult, backend: str, *, dry_run: bool, only_
 
     plan = result.plan
     if plan is None:
-        click.echo("Nothing was written.", err=True)
+        click.echo(f"{backend}: nothing was written." if backend else "Nothing was written.", err=True)
         return
     if dry_run:
         for step in plan.steps:

@@ -148,11 +148,29 @@ def test_a_path_of_another_backend_is_refused(run: Run, robot: Path, tmp_path: P
     run("generate", "code", "-C", robot, "-o", tmp_path / "ws")
     before = contents(tmp_path / "ws")
     ran = run("generate", "other", "-C", robot, "-o", tmp_path / "ws")
-    assert ran.status == 2
-    assert (
-        "`CODE/scan.txt` is made by the backend `code` in this folder, and by `other`; nothing was changed" in ran.err
-    )
+    assert ran.status == 1
+    assert "`CODE/scan.txt` is made by the backend `code` in this folder, and by `other`\n" in ran.err
+    assert "\nNothing was written.\n" in ran.err
     assert contents(tmp_path / "ws") == before
+
+
+def test_two_languages_in_one_package_are_told_with_the_remedy(run: Run, tmp_path: Path) -> None:
+    tmp_path.joinpath("archgen.yaml").write_text(
+        """\
+project: {id: bot}
+ros: {distro: jazzy}
+generate: {into: ws, backends: {ros2_python: {}, ros2_cpp: {}, ros2_launch: {}}}
+groups: {g: {components: {a: {outputs: {x: std_msgs/msg/Bool}}, b: {inputs: {x: a.x}}}}}
+nodes: {a: {implements: a, language: python, package: p}, b: {implements: b, language: cpp, package: p}}
+"""
+    )
+    ran = run("generate", "-C", tmp_path)
+    assert ran.status == 1
+    told = "the package `p` has programs in Python and in C++: `b` and `a`; here it has only those in C++"
+    assert told in ran.err
+    assert "give the nodes of one language a `package` of their own" in ran.err
+    assert "ros2_cpp: nothing was written." in ran.err
+    assert (tmp_path / "ws/src/bot_bringup/package.xml").exists()  # what comes after is made
 
 
 @pytest.mark.parametrize(
