@@ -1,5 +1,6 @@
 """For generators of what starts a system: the plan of the start-up, its steps, and the words for them."""
 
+from archgen.bringup.dds_profiles import record_dds_profile
 from archgen.bringup.plan_shapes import DEFAULT_SECONDS, RosLaunch, StartPlan, StartStep, format_seconds
 from archgen.bringup.start_commands import SUBSTITUTION, has_substitution
 from archgen.bringup.start_plan import find_network_variables, make_start_plan
@@ -32,4 +33,5 @@ __all__ = [
     "has_substitution",
     "make_start_plan",
     "name_waits",
+    "record_dds_profile",
 ]

@@ -22,6 +22,7 @@ from archgen.plugin.starting import (
     find_network_variables,
     find_wanted_steps,
     make_start_plan,
+    record_dds_profile,
 )
 from archgen.plugins.ros_code.launch_entries import record_container_entry, record_node_entry
 from archgen.plugins.ros_code.package_facts import RosdepKeys, record_package_facts
@@ -112,6 +113,7 @@ def _record_host(
         "place": write_place(element.at) if element else "",
         "package": make_ros_name(f"{context.architecture.project.id}_bringup"),
         "network": [{"name": name, "value": value} for name, value in network.items()],
+        "dds_profile": record_dds_profile(context.architecture, host),
         "entries": entries,
         "phases": _group_by_phase(entries, ros),
         "simulated_time": times[0] if times else None,
