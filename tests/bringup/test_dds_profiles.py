@@ -5,14 +5,13 @@ from __future__ import annotations
 import contextlib
 import os
 import subprocess
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping
 from pathlib import Path
 
 import pytest
 
 from archgen.bringup.dds_profiles import find_dds_profile, record_dds_profile
 from archgen.model.architecture import Architecture
-from tests.outside_tools import run_judge
 from tests.ros_environment import ROS_FOLDER, make_ros_python, ros_environment
 
 Derived = Callable[[str], Architecture]
@@ -81,6 +80,9 @@ print(*sorted(heard))
 """
 
 
+_IP = "/sbin/ip"
+
+
 @contextlib.contextmanager
 def two_computers() -> Iterator[tuple[str, str]]:
     """Yield the names of two network namespaces that a cable joins, which carries no multicast."""
@@ -101,20 +103,24 @@ def two_computers() -> Iterator[tuple[str, str]]:
     ]
     try:
         for each in words:
-            done = subprocess.run(["ip", *each.split()], capture_output=True, text=True, check=False)
+            done = _run_ip(*each.split())
             if done.returncode:
                 pytest.skip(f"no networks can be made here: {done.stderr}")
         yield names
     finally:
         for name in names:
-            subprocess.run(["ip", "netns", "del", name], capture_output=True, check=False)
+            _run_ip("netns", "del", name)
+
+
+def _run_ip(*words: str) -> subprocess.CompletedProcess[str]:
+    return subprocess.run([_IP, *words], capture_output=True, text=True, check=False)  # noqa: S603 - of the system
 
 
 @pytest.mark.ros
 @pytest.mark.slow
 def test_nodes_of_two_hosts_meet_by_their_profiles_alone(derived: Derived, tmp_path: Path) -> None:
     """They do not where a profile names another interface, or another peer."""
-    if os.geteuid() or not Path("/sbin/ip").exists():
+    if os.geteuid() or not Path(_IP).exists():
         pytest.skip("who is not root makes no networks")
     python = make_ros_python()
     (tmp_path / "listener.py").write_text(LISTENER)
@@ -131,21 +137,20 @@ def test_nodes_of_two_hosts_meet_by_their_profiles_alone(derived: Derived, tmp_p
             nodes = []
             for network, (host, text) in zip(networks, profiles.items(), strict=True):
                 profile = tmp_path / f"{host}.xml"
-                for old, new in change.items():
-                    text = text.replace(old, new)
-                profile.write_text(text)
+                profile.write_text(_replace_all(text, change))
                 environment = ros_environment(88, tmp_path) | {
                     "ROS_AUTOMATIC_DISCOVERY_RANGE": "SUBNET",
                     "FASTRTPS_DEFAULT_PROFILES_FILE": str(profile),
                 }
+                name, seconds = "one" if host == "head" else "two", 8 if change else 30
                 # Of two computers, they share no memory.
-                words = f"mount -t tmpfs tmpfs /dev/shm && exec {python} {tmp_path}/listener.py {'one' if host == 'head' else 'two'} {30 if not change else 8}"
-                nodes.append(
-                    subprocess.Popen(
-                        ["ip", "netns", "exec", network, "sh", "-c", words],
-                        env=environment,
-                        stdout=subprocess.PIPE,
-                        text=True,
-                    )
-                )
+                words = f"mount -t tmpfs tmpfs /dev/shm && exec {python} {tmp_path}/listener.py {name} {seconds}"
+                command = [_IP, "netns", "exec", network, "sh", "-c", words]
+                nodes.append(subprocess.Popen(command, env=environment, stdout=subprocess.PIPE, text=True))  # noqa: S603 - our own
             assert {node.communicate(timeout=90)[0].strip().splitlines()[-1] for node in nodes} == wanted, change
+
+
+def _replace_all(text: str, changes: Mapping[str, str]) -> str:
+    for old, new in changes.items():
+        text = text.replace(old, new)
+    return text

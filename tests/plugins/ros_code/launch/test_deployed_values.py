@@ -107,7 +107,7 @@ def test_dds_uses_the_interface_of_the_only_link(workspace: Path, host: str, add
     assert [each.exists() for each in paths] == [bool(addresses)] * 2
     for reader, text in _list_texts(workspace, host).items():
         assert text.count("FASTRTPS_DEFAULT_PROFILES_FILE") == (
-            addresses and {"launch": 1, "script": 5, "units": 4, "compose": 4}[reader] or 0
+            (addresses and {"launch": 1, "script": 5, "units": 4, "compose": 4}[reader]) or 0
         )
     for path in paths if addresses else ():
         assert re.findall("<address>(.*?)</address>", path.read_text()) == addresses
