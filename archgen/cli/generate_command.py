@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import sys
+from collections.abc import Iterable
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -19,7 +20,8 @@ if TYPE_CHECKING:
 _CONFLICT_HELP = {
     "edited": "was changed by hand since archgen wrote it, and stays as it is; `--overwrite {0}` takes the new one, "
     "`--keep {0}` keeps yours for good",
-    "foreign": "is a file of yours, and stays as it is; move it away for the new one, or keep it for good with `--keep {0}`",
+    "foreign": "is a file of yours, since `.archgen` records nothing of it, and stays as it is; move it away for the new one, "
+    "keep it for good with `--keep {0}`, or bring a record back that was lost",
     "blocked": "cannot be written: {1}; move that away",
 }
 
@@ -178,11 +180,9 @@ def _print_result(result: WorkspaceResult, backend: str, *, dry_run: bool, only_
             click.echo(make_visible(f"{step.verb:<8} {step.path}{f'  ({step.note})' if step.note else ''}"))
     for step in plan.steps:
         _print_code_findings(step)
-        if step.verb in _CONFLICT_HELP:
-            text = f"{step.path} {_CONFLICT_HELP[step.verb].format(step.path, step.note)}"
-            click.echo(f"error: {make_visible(text)}", err=True)
-        elif step.note and not (dry_run or only_check):
+        if step.note and not (step.verb in _CONFLICT_HELP or dry_run or only_check):
             command_support.print_warning(f"{step.path}: {step.note}")
+    _print_conflicts(plan.conflicts)
     if only_check:
         for step in result.stale_steps:
             click.echo(make_visible(f"stale: {step.path} ({_STALE_WORDS[step.verb]})"))
@@ -196,6 +196,19 @@ def _print_result(result: WorkspaceResult, backend: str, *, dry_run: bool, only_
         ]
         detail = ", ".join(f"{count} {words}" for count, words in counts if count) or "no files"
         command_support.print_written(result.folder, f"{backend}: {detail}" if backend else detail)
+
+
+def _print_conflicts(steps: Iterable[FileStep]) -> None:
+    """Say of each file that stays why, but once of all for which one thing is in the way."""
+    from archgen.diagnostics.safe_text import make_visible
+
+    alike: dict[tuple[str, str], list[FileStep]] = {}
+    for step in steps:
+        alike.setdefault((step.verb, step.note or step.path), []).append(step)
+    for (verb, _), (step, *others) in alike.items():
+        text = f"{step.path} {_CONFLICT_HELP[verb].format(step.path, step.note)}"
+        text += f" ({len(others)} more for the same reason)" if others else ""
+        click.echo(f"error: {make_visible(text)}", err=True)
 
 
 def _print_code_findings(step: FileStep) -> None:

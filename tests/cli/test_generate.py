@@ -323,3 +323,25 @@ def test_what_cannot_be_made_is_refused(
     assert ran.status in {1, 2}
     assert message in ran.err
     assert not (robot / "archgen-out").exists()
+
+
+def test_other_ends_of_lines_are_no_edit(run: Run, robot: Path, tmp_path: Path) -> None:
+    """Git and editors of Windows write them."""
+    run("generate", "code", "-C", robot, "-o", tmp_path / "ws")
+    before = contents(tmp_path / "ws")
+    file = tmp_path / "ws" / "code" / "Scan.txt"
+    file.write_bytes(file.read_bytes().replace(b"\n", b"\r\n"))
+    ran = run("generate", "code", "-C", robot, "-o", tmp_path / "ws")
+    assert ran.status == 0
+    assert "1 changed" in ran.out
+    assert contents(tmp_path / "ws") == before
+
+
+def test_a_link_is_told_once(run: Run, robot: Path, tmp_path: Path) -> None:
+    (tmp_path / "elsewhere").mkdir()
+    (tmp_path / "ws").mkdir()
+    (tmp_path / "ws" / "code").symlink_to(tmp_path / "elsewhere")
+    ran = run("generate", "code", "-C", robot, "-o", tmp_path / "ws")
+    assert ran.status == 1
+    assert ran.err.count("`code` is a link") == 1
+    assert "(1 more for the same reason)" in ran.err

@@ -10,6 +10,7 @@ from typing import Literal
 
 from archgen.emit.workspace.disk_files import DiskFile, DiskReader, GeneratedFile, fold_file_path
 from archgen.emit.workspace.known_fits import KnownFits, digest_fit
+from archgen.emit.workspace.moved_packages import find_moved_packages
 from archgen.emit.workspace.own_code import CodeFinding, CodeReport, has_lost_names, judge_own_code, read_contract
 from archgen.emit.workspace.run_record import (
     RecordedFile,
@@ -143,7 +144,9 @@ class _Planner:
             self._outlived[path] = entry
         elif on_disk.exists and path in self.choices.kept:
             self.steps.append(FileStep(path, "left", "it is no longer made, and kept: it is yours now"))
-        elif on_disk.digest in entry.digests or (on_disk.exists and self._is_merged(path, entry)):
+        elif on_disk.digest in entry.digests or (
+            on_disk.exists and (self._is_merged(path, entry) or self._has_other_line_ends(path))
+        ):
             self.removals.append(path)
             self.steps.append(FileStep(path, "removed"))
         elif on_disk.exists:
@@ -168,14 +171,24 @@ class _Planner:
             self._keep_own(file, entry, digest, on_disk)
         elif on_disk.digest == digest:
             self._keep_same(file, entry, digest, on_disk)
-        elif on_disk.digest in self.known_digests[fold_file_path(file.path)] or (
-            entry and file.path in self.choices.overwritten
+        elif (
+            on_disk.digest in self.known_digests[fold_file_path(file.path)]
+            or (entry and file.path in self.choices.overwritten)
+            or self._has_other_line_ends(file.path)
         ):
             self._write(file, entry, digest, on_disk, "changed")
         elif entry and self._is_merged(file.path, entry, file.data):
             self._write(file, entry, digest, on_disk, "merged")
         else:
             self._keep(file, entry, "edited" if entry else "foreign")
+
+    def _has_other_line_ends(self, path: str) -> bool:
+        """Whether a file is one that archgen wrote but for the ends of its lines, which git and editors of Windows change."""
+        data = self.disk.read_data(path)
+        return (
+            b"\r\n" in data
+            and hashlib.sha256(data.replace(b"\r\n", b"\n")).hexdigest() in self.known_digests[fold_file_path(path)]
+        )
 
     def _is_merged(self, path: str, entry: RecordedFile, new_data: bytes = b"") -> bool:
         """Whether git made a file of two that archgen wrote: each of its lines is of one of them, or of the new one."""
@@ -244,7 +257,10 @@ class _Planner:
         fit = digest_fit(file, disk_digest, meanings, last_meanings)
         if self.fits.is_known(fit):
             return CodeReport((), last_meanings)
-        report = _judge(file, self.disk.read_data(file.path), meanings, self._list_helpers(file.path))
+        data = self.disk.read_data(file.path)
+        report = _judge(file, data, meanings, self._list_helpers(file.path))
+        if moved := tuple(find_moved_packages(file.path, data, self.wanted_paths)):
+            report = replace(report, findings=(*report.findings, *moved))
         if (
             not report.findings
             and report.meanings == last_meanings

@@ -508,7 +508,7 @@ def test_attributes_of_the_user_stay(tmp_path: Path) -> None:
     generate(tmp_path, files(a="1"))
     text = (tmp_path / ".gitattributes").read_text()
     assert text.startswith("*.png binary\n# archgen: ")
-    assert "\n/a merge=union linguist-generated\n" in text
+    assert "\n/a merge=union eol=lf linguist-generated\n" in text
     assert (tmp_path / ".archgen" / ".gitattributes").exists()
     (tmp_path / ".gitattributes").write_text(f"{text}*.jpg binary")
     generate(tmp_path, files(b="1"))
