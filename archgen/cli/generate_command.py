@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import sys
-from collections.abc import Iterable
+from collections.abc import Collection, Iterable
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -133,6 +133,8 @@ def command(  # noqa: C901, PLR0913 - one for each option
             continue
         _print_result(result, backend if name is None else "", dry_run=dry_run, only_check=only_check)
         is_complete &= result.is_complete and not (only_check and result.stale_steps)
+    if name is None:
+        _tell_unlisted_backends(output, listed.backends)
     if not is_complete:
         sys.exit(1)
     command_support.exit_by_findings(checked_project)
@@ -148,6 +150,19 @@ def _find_listed_folder(checked_project: CheckedProject) -> Path | None:
         msg = f"`generate.into` leads out of the project's repository: {written}; name that folder with `-o`"
         raise click.UsageError(msg)
     return folder
+
+
+def _tell_unlisted_backends(folder: Path | None, listed: Collection[str]) -> None:
+    """Say whose files in the workspace nobody renews: those of backends that the project lists no more."""
+    from archgen.emit.workspace.run_record import list_recorded_backends
+
+    for backend in list_recorded_backends(folder) if folder else ():
+        if backend not in listed:
+            command_support.print_warning(
+                f"{folder} has files of the backend `{backend}`, which `generate` does not list: they stay as they are; "
+                f"`archgen generate {backend} -o {folder}` renews them, and who needs them no more removes them "
+                f"with .archgen/{backend}.json"
+            )
 
 
 def _read_settings(settings: tuple[str, ...]) -> dict[str, str]:

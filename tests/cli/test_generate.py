@@ -345,3 +345,19 @@ def test_a_link_is_told_once(run: Run, robot: Path, tmp_path: Path) -> None:
     assert ran.status == 1
     assert ran.err.count("`code` is a link") == 1
     assert "(1 more for the same reason)" in ran.err
+
+
+def test_a_backend_that_is_listed_no_more_is_told(run: Run, robot: Path, tmp_path: Path) -> None:
+    project = robot / "archgen.yaml"
+    text = project.read_text()
+    project.write_text(text + "generate: {backends: {code: }}\n")
+    assert not run("generate", "-C", robot, "-o", tmp_path / "ws").err
+    project.write_text(text + "generate: {backends: {start: }}\n")
+    ran = run("generate", "-C", robot, "-o", tmp_path / "ws")
+    assert "has files of the backend `code`, which `generate` does not list" in ran.err
+
+
+def test_what_was_seen_of_a_robot_is_no_record_of_a_backend(run: Run, robot: Path) -> None:
+    (robot / ".archgen").mkdir()
+    (robot / ".archgen" / "conform.json").write_text('{"archgen": 1, "robots": {}}')
+    assert run("generate", "code", "-C", robot, "-o", robot).status == 0
