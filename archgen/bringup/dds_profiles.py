@@ -74,7 +74,7 @@ def find_dds_profile(architecture: Architecture, host_id: str | None) -> DdsProf
     host = architecture.hosts.get(host_id or "")
     if host is None or architecture.ros_discovery != "peers" or is_ros_1(architecture.distro):
         return None
-    written = {each.name: str(each.value) for each in architecture.ros_environment} | host.environment
+    written = {each.name: str(each.value) for each in architecture.ros_environment} | dict(host.environment)
     if not written.get("RMW_IMPLEMENTATION", _FAST_DDS).startswith(_FAST_DDS) or not _OWN_WORDS.isdisjoint(written):
         return None
     peers = () if can_name_peers(architecture.distro) else (_LOOPBACK, *list_peers(architecture, host.id))
