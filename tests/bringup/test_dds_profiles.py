@@ -73,7 +73,7 @@ end = time.monotonic() + float(sys.argv[2])
 while time.monotonic() < end and len(heard) < 2:
     publisher.publish(String(data=sys.argv[1]))
     rclpy.spin_once(node, timeout_sec=0.1)
-for _ in range(20):  # the other one may have come later
+for _ in range(100):  # the other one may have come later
     publisher.publish(String(data=sys.argv[1]))
     time.sleep(0.1)
 print(*sorted(heard))
@@ -142,12 +142,12 @@ def test_nodes_of_two_hosts_meet_by_their_profiles_alone(derived: Derived, tmp_p
                     "ROS_AUTOMATIC_DISCOVERY_RANGE": "SUBNET",
                     "FASTRTPS_DEFAULT_PROFILES_FILE": str(profile),
                 }
-                name, seconds = "one" if host == "head" else "two", 8 if change else 30
+                name, seconds = "one" if host == "head" else "two", 8 if change else 60
                 # Of two computers, they share no memory.
                 words = f"mount -t tmpfs tmpfs /dev/shm && exec {python} {tmp_path}/listener.py {name} {seconds}"
                 command = [_IP, "netns", "exec", network, "sh", "-c", words]
                 nodes.append(subprocess.Popen(command, env=environment, stdout=subprocess.PIPE, text=True))  # noqa: S603 - our own
-            assert {node.communicate(timeout=90)[0].strip().splitlines()[-1] for node in nodes} == wanted, change
+            assert {node.communicate(timeout=120)[0].strip().splitlines()[-1] for node in nodes} == wanted, change
 
 
 def _replace_all(text: str, changes: Mapping[str, str]) -> str:

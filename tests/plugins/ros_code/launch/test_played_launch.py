@@ -138,6 +138,7 @@ def test_it_resolves_variables_scheduling_and_shared_memory(tmp_path: Path) -> N
         assert variables == {
             "ROS_AUTOMATIC_DISCOVERY_RANGE": "LOCALHOST",
             "ROS_STATIC_PEERS": "10.0.0.2",
+            "FASTRTPS_DEFAULT_PROFILES_FILE": str(workspace / "install/share/rover_bringup/launch/hosts/pc.dds.xml"),
             "MODE": 'a "b" <c>',
         }
         # What one computer's file sets ends with it.
