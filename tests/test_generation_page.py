@@ -83,8 +83,8 @@ def test_what_a_later_run_does(run: Run, robot: Path) -> None:
             "new one, `--keep run_all.sh` keeps yours for good"
         ),
         (
-            "error: stubs/stub_mode.py is a file of yours, and stays as it is; move it away for the new one, or keep it for good "
-            "with `--keep stubs/stub_mode.py`"
+            "error: stubs/stub_mode.py is a file of yours, since `.archgen` records nothing of it, and stays as it is; move it away "
+            "for the new one, keep it for good with `--keep stubs/stub_mode.py`, or bring a record back that was lost"
         ),
     ]
     ran = run(

@@ -13,7 +13,7 @@ from archgen.model.component import Connection, Input, Output
 from archgen.model.message_types import flow_of, full_message_name
 from archgen.model.node import Node
 from archgen.model.port_media import MEDIUM_NAMES, MEMORY, is_physical, name_medium, uses_ros
-from archgen.model.ros_distro import can_name_peers
+from archgen.model.ros_distro import can_name_peers, is_ros_1
 
 
 def is_expected_type(architecture: Architecture, expected_type: str, output: Output) -> bool:
@@ -222,14 +222,16 @@ def _find_places(architecture: Architecture) -> Mapping[str, Mapping[Span, str]]
 
 def unused_ros_setting(architecture: Architecture) -> Iterator[Diagnostic]:
     """Something is written that only ROS has, at a port or a program that is no ROS; or that its distribution has not."""
-    if architecture.ros_discovery == "peers" and not can_name_peers(architecture.distro):
+    middleware = next((each for each in architecture.ros_environment if each.name == "RMW_IMPLEMENTATION"), None)
+    # Fast DDS is told by a profile that is generated.
+    is_told = not is_ros_1(architecture.distro) and (not middleware or str(middleware.value).startswith("rmw_fastrtps"))
+    if architecture.ros_discovery == "peers" and not can_name_peers(architecture.distro) and not is_told:
         yield Diagnostic(
             "unused-ros-setting",
             f"`discovery: peers` has no effect: {architecture.distro} reads no addresses of peers from the environment, ROS 2 does since Iron",
             architecture.distro_at,
-            help="leave it out, and give the nodes a profile of their DDS by `ros: {environment: ...}`",
+            help="leave it out, and give the nodes a profile of their DDS by `ros: {environment: ...}`; for Fast DDS one is generated",
         )
-    middleware = next((each for each in architecture.ros_environment if each.name == "RMW_IMPLEMENTATION"), None)
     if architecture.ros_discovery == "peers" and middleware and str(middleware.value).startswith("rmw_zenoh"):
         yield Diagnostic(
             "unused-ros-setting",

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import sys
+from collections.abc import Collection, Iterable
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -19,7 +20,8 @@ if TYPE_CHECKING:
 _CONFLICT_HELP = {
     "edited": "was changed by hand since archgen wrote it, and stays as it is; `--overwrite {0}` takes the new one, "
     "`--keep {0}` keeps yours for good",
-    "foreign": "is a file of yours, and stays as it is; move it away for the new one, or keep it for good with `--keep {0}`",
+    "foreign": "is a file of yours, since `.archgen` records nothing of it, and stays as it is; move it away for the new one, "
+    "keep it for good with `--keep {0}`, or bring a record back that was lost",
     "blocked": "cannot be written: {1}; move that away",
 }
 
@@ -131,6 +133,8 @@ def command(  # noqa: C901, PLR0913 - one for each option
             continue
         _print_result(result, backend if name is None else "", dry_run=dry_run, only_check=only_check)
         is_complete &= result.is_complete and not (only_check and result.stale_steps)
+    if name is None:
+        _tell_unlisted_backends(output, listed.backends)
     if not is_complete:
         sys.exit(1)
     command_support.exit_by_findings(checked_project)
@@ -146,6 +150,19 @@ def _find_listed_folder(checked_project: CheckedProject) -> Path | None:
         msg = f"`generate.into` leads out of the project's repository: {written}; name that folder with `-o`"
         raise click.UsageError(msg)
     return folder
+
+
+def _tell_unlisted_backends(folder: Path | None, listed: Collection[str]) -> None:
+    """Say whose files in the workspace nobody renews: those of backends that the project lists no more."""
+    from archgen.emit.workspace.run_record import list_recorded_backends
+
+    for backend in list_recorded_backends(folder) if folder else ():
+        if backend not in listed:
+            command_support.print_warning(
+                f"{folder} has files of the backend `{backend}`, which `generate` does not list: they stay as they are; "
+                f"`archgen generate {backend} -o {folder}` renews them, and who needs them no more removes them "
+                f"with .archgen/{backend}.json"
+            )
 
 
 def _read_settings(settings: tuple[str, ...]) -> dict[str, str]:
@@ -171,18 +188,16 @@ def _print_result(result: WorkspaceResult, backend: str, *, dry_run: bool, only_
 
     plan = result.plan
     if plan is None:
-        click.echo("Nothing was written.", err=True)
+        click.echo(f"{backend}: nothing was written." if backend else "Nothing was written.", err=True)
         return
     if dry_run:
         for step in plan.steps:
             click.echo(make_visible(f"{step.verb:<8} {step.path}{f'  ({step.note})' if step.note else ''}"))
     for step in plan.steps:
         _print_code_findings(step)
-        if step.verb in _CONFLICT_HELP:
-            text = f"{step.path} {_CONFLICT_HELP[step.verb].format(step.path, step.note)}"
-            click.echo(f"error: {make_visible(text)}", err=True)
-        elif step.note and not (dry_run or only_check):
+        if step.note and not (step.verb in _CONFLICT_HELP or dry_run or only_check):
             command_support.print_warning(f"{step.path}: {step.note}")
+    _print_conflicts(plan.conflicts)
     if only_check:
         for step in result.stale_steps:
             click.echo(make_visible(f"stale: {step.path} ({_STALE_WORDS[step.verb]})"))
@@ -196,6 +211,19 @@ def _print_result(result: WorkspaceResult, backend: str, *, dry_run: bool, only_
         ]
         detail = ", ".join(f"{count} {words}" for count, words in counts if count) or "no files"
         command_support.print_written(result.folder, f"{backend}: {detail}" if backend else detail)
+
+
+def _print_conflicts(steps: Iterable[FileStep]) -> None:
+    """Say of each file that stays why, but once of all for which one thing is in the way."""
+    from archgen.diagnostics.safe_text import make_visible
+
+    alike: dict[tuple[str, str], list[FileStep]] = {}
+    for step in steps:
+        alike.setdefault((step.verb, step.note or step.path), []).append(step)
+    for (verb, _), (step, *others) in alike.items():
+        text = f"{step.path} {_CONFLICT_HELP[verb].format(step.path, step.note)}"
+        text += f" ({len(others)} more for the same reason)" if others else ""
+        click.echo(f"error: {make_visible(text)}", err=True)
 
 
 def _print_code_findings(step: FileStep) -> None:

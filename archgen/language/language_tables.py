@@ -650,6 +650,7 @@ OTHER_WORDS: Mapping[str, Mapping[str, str]] = {
         "msg": "message", "msg_type": "message", "message_type": "message", "ros_type": "message",
         "ros_message": "message", "service": "message", "srv": "message", "action": "message", "interface": "message",
         "type": "message", "definition": "message", "bytes": "size", "description": "comment", "doc": "comment",
+        "goal": "request", "result": "response",
     },
     "qos": {
         "queue": "depth", "queue_size": "depth",

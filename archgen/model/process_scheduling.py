@@ -16,7 +16,7 @@ from archgen.model.node import Node
 
 MAX_PRIORITY = 99
 """The most urgent priority that SCHED_FIFO has; 0 is none."""
-RUNNER = "run_scheduled"
+SCHEDULING_SCRIPT = "run_scheduled"
 """The script that generated launch files put in front: it leaves out what the computer does not allow."""
 _PREEMPTIVE_ORDERS = frozenset({None, "fair", "fixed_priority"})
 """Orders of a host in which a priority keeps others from the cores."""
@@ -54,7 +54,7 @@ def read_scheduling(words: Sequence[str]) -> tuple[ProcessScheduling, tuple[str,
     rest = tuple(words)
     while rest:
         first, *others = rest
-        if first == "--" or first.rpartition("/")[2] == RUNNER:
+        if first == "--" or first.rpartition("/")[2] == SCHEDULING_SCRIPT:
             rest = tuple(others)
         elif first == "chrt" and len(others) > 1 and others[0] in {"-f", "--fifo"} and _PRIORITY.match(others[1]):
             priority, rest = int(others[1]), tuple(others[2:])

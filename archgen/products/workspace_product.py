@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 import contextlib
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 
 from archgen.diagnostics.diagnostic import Diagnostic, Severity
+from archgen.diagnostics.source_span import NO_SPAN
 from archgen.diagnostics.suggestions import did_you_mean
 from archgen.emit.backend_manifests import Backend
 from archgen.emit.file_tree import OutputError, refuse_file
@@ -25,7 +26,7 @@ from archgen.products.report_cache import cache_folder
 from archgen.products.trusted_backends import refuse_untrusted_pass
 from archgen.views.generation import find_view_maker, make_generation_views
 from archgen.views.generation.architecture_needs import find_unmet_needs
-from archgen.views.generation.generation_context import GenerationContext
+from archgen.views.generation.generation_context import GenerationContext, tell_left_out
 from archgen.views.generation.model_paths import index_model_paths, write_model_paths
 
 
@@ -88,6 +89,8 @@ def write_workspace(
     files, findings = _render_files(checked_project, options, backend, request.host)
     if files is None:
         return WorkspaceResult(folder, None, findings)
+    if clashes := tuple(_find_clashes(files, backend, folder)):
+        return WorkspaceResult(folder, None, (*findings, *clashes))
     run = _name_run(checked_project, options, request.host)
     request = replace(request, removes_unmade=request.removes_unmade and not checked_project.has_errors)
     return WorkspaceResult(folder, _write_files(files, backend, folder, run, request), findings)
@@ -195,6 +198,19 @@ def _name_run(checked_project: CheckedProject, options: OutputOptions, host: str
     return " ".join(words)
 
 
+def _find_clashes(files: Sequence[GeneratedFile], backend: Backend, folder: Path) -> Iterator[Diagnostic]:
+    """Yield the first file that another backend makes in a folder, too."""
+    other_backends = read_other_records(folder, backend.id)
+    for file in files if other_backends else ():
+        if other := other_backends.get(fold_file_path(file.path)):
+            yield tell_left_out(
+                f"`{file.path}` is made by the backend `{other}` in this folder, and by `{backend.id}`",
+                NO_SPAN,
+                help_line=f"give another folder with `-o`, or remove `.archgen/{other}.json` if that one is not used here any more",
+            )
+            return
+
+
 def _write_files(
     files: Sequence[GeneratedFile], backend: Backend, folder: Path, run: str, request: WorkspaceRequest
 ) -> WorkspacePlan:
@@ -215,15 +231,6 @@ def _write_files(
 def _plan_files(
     files: Sequence[GeneratedFile], backend: Backend, folder: Path, run: str, request: WorkspaceRequest
 ) -> WorkspacePlan:
-    other_backends = read_other_records(folder, backend.id)
-    for file in files if other_backends else ():
-        other = other_backends.get(fold_file_path(file.path))
-        if other:
-            msg = f"`{file.path}` is made by the backend `{other}` in this folder, and by `{backend.id}`"
-            raise OutputError(
-                msg,
-                f"nothing was changed; give another folder with `-o`, or remove `.archgen/{other}.json` if that one is not used here any more",
-            )
     record = read_run_record(folder, backend.id)
     known_paths = {*record.files, *(file.path for file in files)}
     fits = KnownFits(cache_folder(), folder, backend.id)

@@ -6,6 +6,7 @@ import posixpath
 import re
 from collections.abc import Iterator
 from itertools import islice
+from pathlib import PurePosixPath
 
 from archgen.diagnostics.common_wording import join_first
 from archgen.diagnostics.diagnostic import Diagnostic, Severity
@@ -33,6 +34,7 @@ IgnoredFile = tuple[str, str | None]
 """A file that is not read, and the section that its first key nearly names."""
 PASS_FOLDER = "passes/"  # noqa: S105 - not a password
 """Where a project's own passes stand; a file there whose `rules` are a list is one."""
+_RECORD_FOLDER = ".archgen"
 _NAMED_FILES = 24
 _MAX_SECTIONS = 100
 """The first keys of a file without sections that are looked at for misspelt ones: there are 20 sections."""
@@ -191,14 +193,22 @@ def _guess_section(document: YamlDocument, known_sections: frozenset[str]) -> st
 
 
 def _report_ignored_files(state: ReadingState, ignored_files: list[IgnoredFile]) -> None:
-    """List files that are not read in one note, without those that nodes name as their parameters."""
+    """List files that are not read in one note, without parameters of nodes, and what stands in a generated workspace."""
     named_paths = set(_list_parameter_paths(state)) if ignored_files else set()
     ignored_files = [
-        (file, guess) for file, guess in ignored_files if named_paths.isdisjoint(_list_endings(file, named_paths))
+        (file, guess)
+        for file, guess in ignored_files
+        if named_paths.isdisjoint(_list_endings(file, named_paths)) and (guess or not _is_in_workspace(state, file))
     ]
     # With a broken archgen.yaml it is unknown whether it has `sources`: the note could be wrong.
     if ignored_files and PROJECT_FILE not in state.broken_files:
         state.diagnostics.append(_diagnose_ignored_files(ignored_files))
+
+
+def _is_in_workspace(state: ReadingState, file: str) -> bool:
+    """Whether a file stands below a folder that `archgen generate` has a record in."""
+    parents = PurePosixPath(file).parents
+    return any(state.files.has_path(f"{folder}/{_RECORD_FOLDER}") for folder in parents if folder.name)
 
 
 def read_library_slices(state: ReadingState, folder: str) -> None:

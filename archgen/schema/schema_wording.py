@@ -6,6 +6,7 @@ The validator's own messages quote the schema's patterns and Python values, whic
 from __future__ import annotations
 
 import re
+from collections.abc import Sequence
 from typing import Any
 
 from archgen.diagnostics import odd_characters
@@ -110,7 +111,7 @@ def _describe_wrong_type(name: str, node: YamlNode, schema_part: dict[str, Any])
             return "wrong-value", *describe_wrong_quantity(name, node.text, dimension, schema_part)
         if node.value is None:
             return "wrong-type", f"{name} is empty, but must be {expected}", None
-        help_line = _find_scalar_help(node.text, schema_part)
+        help_line = _find_scalar_help(node, schema_part)
         # Without this note `8` would read as if nothing were wrong with it.
         is_quoted = not node.is_plain and _UNQUOTED_VALUE.fullmatch(node.text)
         quotes_note = " in quotes, which is a text," if is_quoted else ""
@@ -123,7 +124,8 @@ def _describe_wrong_type(name: str, node: YamlNode, schema_part: dict[str, Any])
     return "wrong-type", f"{name} is {actual}, but must be {expected}", help_line
 
 
-def _find_scalar_help(text: str, schema_part: dict[str, Any]) -> str | None:
+def _find_scalar_help(node: ScalarNode, schema_part: dict[str, Any]) -> str | None:
+    text = node.text
     types = schema_part.get("type", ())
     if "boolean" in types:
         return _find_boolean_help(text.lower())
@@ -136,7 +138,7 @@ def _find_scalar_help(text: str, schema_part: dict[str, Any]) -> str | None:
         return list_wording.describe_list(clip_text(text), schema_part)
     if "patternErrorMessage" in schema_part:
         return str(schema_part["patternErrorMessage"])
-    return f"its keys are {join_quoted(tuple(schema_part['properties']))}" if schema_part.get("properties") else None
+    return _describe_keys((node,), schema_part["properties"]) if schema_part.get("properties") else None
 
 
 def _find_boolean_help(word: str) -> str | None:
@@ -160,13 +162,9 @@ def _find_container_help(name: str, node: YamlNode, schema_part: dict[str, Any])
         if not node.items:
             return "write `{}` for none"
         if "propertyNames" in schema_part or isinstance(schema_part.get("additionalProperties"), dict):
-            ids = [entry.text for entry in node.items if isinstance(entry, ScalarNode)]
-            is_short = len(ids) == len(node.items) <= _SHORT_LIST and all(map(re.compile(r"[\w-]+\Z").match, ids))
-            entries = f"`{{{', '.join(f'{each}: {{}}' for each in ids)}}}`" if is_short else "`id: ...` lines"
-            return f"{name} is keyed by id: write {entries} instead of a list"
-        return (
-            f"its keys are {join_quoted(tuple(schema_part['properties']))}" if schema_part.get("properties") else None
-        )
+            entries = _write_as_keys(node.items)
+            return f"{name} is keyed by id: write {f'`{entries}`' if entries else '`id: ...` lines'} instead of a list"
+        return _describe_keys(node.items, schema_part["properties"]) if schema_part.get("properties") else None
     is_braces = isinstance(node, MappingNode) and node.span.line == node.span.end_line
     if isinstance(node, MappingNode) and ("array" in schema_part.get("type", ()) or is_braces):
         is_list_asked = "array" in schema_part.get("type", ())
@@ -176,6 +174,23 @@ def _find_container_help(name: str, node: YamlNode, schema_part: dict[str, Any])
             else "text with braces must be quoted"
         )
     return str(schema_part["patternErrorMessage"]) if "patternErrorMessage" in schema_part else None
+
+
+def _describe_keys(entries: Sequence[YamlNode], keys: dict[str, Any]) -> str:
+    """Return which keys are asked, with what stands in their place below the one that holds things by id, if just one does."""
+    open_keys = [key for key, part in keys.items() if isinstance(part.get("additionalProperties"), dict)]
+    example = _write_as_keys(entries) if len(open_keys) == 1 else ""
+    return f"its keys are {join_quoted(tuple(keys))}{f': write `{{{open_keys[0]}: {example}}}`' if example else ''}"
+
+
+def _write_as_keys(entries: Sequence[YamlNode]) -> str:
+    """Return a few ids, alone or each before a colon, as keys in braces; nothing where there are many, or others."""
+    bodies: dict[str, str] = {}
+    for each in entries:
+        bodies |= {each.text: ""} if isinstance(each, ScalarNode) else {}
+        bodies |= dict.fromkeys(each.entries, "...") if isinstance(each, MappingNode) else {}
+    is_short = len(bodies) == len(entries) <= _SHORT_LIST and all(map(re.compile(r"[A-Za-z_][\w-]*\Z").match, bodies))
+    return f"{{{', '.join(f'{key}: {{{body}}}' for key, body in bodies.items())}}}" if is_short else ""
 
 
 _SHORT_LIST = 6

@@ -148,11 +148,29 @@ def test_a_path_of_another_backend_is_refused(run: Run, robot: Path, tmp_path: P
     run("generate", "code", "-C", robot, "-o", tmp_path / "ws")
     before = contents(tmp_path / "ws")
     ran = run("generate", "other", "-C", robot, "-o", tmp_path / "ws")
-    assert ran.status == 2
-    assert (
-        "`CODE/scan.txt` is made by the backend `code` in this folder, and by `other`; nothing was changed" in ran.err
-    )
+    assert ran.status == 1
+    assert "`CODE/scan.txt` is made by the backend `code` in this folder, and by `other`\n" in ran.err
+    assert "\nNothing was written.\n" in ran.err
     assert contents(tmp_path / "ws") == before
+
+
+def test_two_languages_in_one_package_are_told_with_the_remedy(run: Run, tmp_path: Path) -> None:
+    tmp_path.joinpath("archgen.yaml").write_text(
+        """\
+project: {id: bot}
+ros: {distro: jazzy}
+generate: {into: ws, backends: {ros2_python: {}, ros2_cpp: {}, ros2_launch: {}}}
+groups: {g: {components: {a: {outputs: {x: std_msgs/msg/Bool}}, b: {inputs: {x: a.x}}}}}
+nodes: {a: {implements: a, language: python, package: p}, b: {implements: b, language: cpp, package: p}}
+"""
+    )
+    ran = run("generate", "-C", tmp_path)
+    assert ran.status == 1
+    told = "the package `p` has programs in Python and in C++: `b` and `a`; here it has only those in C++"
+    assert told in ran.err
+    assert "give the nodes of one language a `package` of their own" in ran.err
+    assert "ros2_cpp: nothing was written." in ran.err
+    assert (tmp_path / "ws/src/bot_bringup/package.xml").exists()  # what comes after is made
 
 
 @pytest.mark.parametrize(
@@ -305,3 +323,41 @@ def test_what_cannot_be_made_is_refused(
     assert ran.status in {1, 2}
     assert message in ran.err
     assert not (robot / "archgen-out").exists()
+
+
+def test_other_ends_of_lines_are_no_edit(run: Run, robot: Path, tmp_path: Path) -> None:
+    """Git and editors of Windows write them."""
+    run("generate", "code", "-C", robot, "-o", tmp_path / "ws")
+    before = contents(tmp_path / "ws")
+    file = tmp_path / "ws" / "code" / "Scan.txt"
+    file.write_bytes(file.read_bytes().replace(b"\n", b"\r\n"))
+    ran = run("generate", "code", "-C", robot, "-o", tmp_path / "ws")
+    assert ran.status == 0
+    assert "1 changed" in ran.out
+    assert contents(tmp_path / "ws") == before
+
+
+def test_a_link_is_told_once(run: Run, robot: Path, tmp_path: Path) -> None:
+    (tmp_path / "elsewhere").mkdir()
+    (tmp_path / "ws").mkdir()
+    (tmp_path / "ws" / "code").symlink_to(tmp_path / "elsewhere")
+    ran = run("generate", "code", "-C", robot, "-o", tmp_path / "ws")
+    assert ran.status == 1
+    assert ran.err.count("`code` is a link") == 1
+    assert "(1 more for the same reason)" in ran.err
+
+
+def test_a_backend_that_is_listed_no_more_is_told(run: Run, robot: Path, tmp_path: Path) -> None:
+    project = robot / "archgen.yaml"
+    text = project.read_text()
+    project.write_text(text + "generate: {backends: {code: }}\n")
+    assert not run("generate", "-C", robot, "-o", tmp_path / "ws").err
+    project.write_text(text + "generate: {backends: {start: }}\n")
+    ran = run("generate", "-C", robot, "-o", tmp_path / "ws")
+    assert "has files of the backend `code`, which `generate` does not list" in ran.err
+
+
+def test_what_was_seen_of_a_robot_is_no_record_of_a_backend(run: Run, robot: Path) -> None:
+    (robot / ".archgen").mkdir()
+    (robot / ".archgen" / "conform.json").write_text('{"archgen": 1, "robots": {}}')
+    assert run("generate", "code", "-C", robot, "-o", robot).status == 0

@@ -60,3 +60,17 @@ def test_a_slice_that_says_it_is_a_project_is_told(tmp_path: Path, head: str) ->
     assert told == [
         "note groups/weeder.yaml:1:1: `archgen:` makes this file a project of its own: it is no part of this one"
     ]
+
+
+def test_what_is_generated_into_the_project_is_nobodys_slip(tmp_path: Path) -> None:
+    (tmp_path / "archgen.yaml").write_text("groups: {g: {components: {a: A}}}\n", encoding="utf-8")
+    for name, text in {
+        "ws/.archgen/start.json": "{}",
+        "ws/start/compose/pc.yaml": "services: {a: b}",
+        "own/x.yaml": "a: b",
+        "ws/y.yaml": "group: {}",
+    }.items():
+        (tmp_path / name).parent.mkdir(parents=True, exist_ok=True)
+        (tmp_path / name).write_text(text, encoding="utf-8")
+    (told,) = (d.message for d in check_project(tmp_path).findings if d.rule == "ignored-file")
+    assert told == "`ws/y.yaml`, `own/x.yaml` hold no element of the language and are not read"

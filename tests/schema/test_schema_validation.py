@@ -73,6 +73,10 @@ ID = "an id is lower-case words joined by `_`, such as `object_recognition`, and
         ("rules: {unread-output: warn}", "1:24 wrong-value: `unread-output` cannot be `warn` | it is one of `note`, `off`, `warning`, `error`"),
         ("archgen: 2", "1:10 wrong-value: this archgen reads version 1 of the language, not `2` | write `1`"),
         ("groups: {g: {urls: {a: 'javascript:x'}}}", "1:24 wrong-value: `a` cannot be `javascript:x` | an address begins with `https://`, `http://` or `mailto:` and holds no blank; a file of the repository is its path from the project's folder, with `/` and without blanks"),
+        ("generate: [ros2_cpp, start]", "1:1 wrong-type: `generate` is a list, but must be a mapping | its keys are `into`, `backends`: write `{backends: {ros2_cpp: {}, start: {}}}`"),
+        ("generate: ros2_cpp", "1:11 wrong-type: `generate` is `ros2_cpp`, but must be a mapping | its keys are `into`, `backends`: write `{backends: {ros2_cpp: {}}}`"),
+        ("generate: {backends: [ros2_cpp, {start: {image: x}}]}", "1:12 wrong-type: `backends` is a list, but must be a mapping | `backends` is keyed by id: write `{ros2_cpp: {}, start: {...}}` instead of a list"),
+        ("generate: {backends: [[a], {b c: 1}]}", "1:12 wrong-type: `backends` is a list, but must be a mapping | `backends` is keyed by id: write `id: ...` lines instead of a list"),
         ("groups: {g: {tags: safety}}", "1:20 wrong-type: `tags` is `safety`, but must be a list | write `[safety]`"),
     ],
 )  # fmt: skip

@@ -68,12 +68,16 @@ def list_discovery(architecture: Architecture, host_id: str | None) -> dict[str,
     """Return the variables by which nodes of a host find those of others: nothing where multicast does it."""
     if architecture.ros_discovery != "peers" or not can_name_peers(architecture.distro):
         return {}
+    names = list_peers(architecture, host_id)
+    return {"ROS_AUTOMATIC_DISCOVERY_RANGE": "LOCALHOST", **({"ROS_STATIC_PEERS": ";".join(names)} if names else {})}
+
+
+def list_peers(architecture: Architecture, host_id: str | None) -> tuple[str, ...]:
+    """Return the addresses of the hosts with which one shares a link; where nobody says which network there is, of all others."""
     hosts = architecture.hosts
     peers = [other for link in architecture.links.values() if host_id in link.connects for other in link.connects]
-    # Where nobody says which network there is, all hosts are in it.
     found = peers if any(len(link.connects) > 1 for link in architecture.links.values()) else list(hosts)
-    names = dict.fromkeys(hosts[each].network_name for each in found if each in hosts and each != host_id)
-    return {"ROS_AUTOMATIC_DISCOVERY_RANGE": "LOCALHOST", **({"ROS_STATIC_PEERS": ";".join(names)} if names else {})}
+    return tuple(dict.fromkeys(hosts[each].network_name for each in found if each in hosts and each != host_id))
 
 
 def has_unknown_name(node: Node) -> bool:

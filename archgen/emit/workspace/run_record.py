@@ -14,9 +14,10 @@ import json
 import os
 import re
 from collections.abc import Mapping
-from pathlib import Path
+from pathlib import Path, PurePosixPath
 from typing import Any
 
+from archgen.conformance.seen_record import RECORD_FILE
 from archgen.emit.file_tree import OutputError
 from archgen.emit.workspace.disk_files import explain_bad_path, fold_file_path
 from archgen.frozen import dataclass, field
@@ -152,15 +153,18 @@ def read_other_records(workspace: Path, backend: str) -> Mapping[str, str]:
     """Return the folded paths that other backends made in a workspace, with the name of the backend."""
     return {
         fold_file_path(path): name
-        for name in _list_recorded_backends(workspace)
+        for name in list_recorded_backends(workspace)
         if name != backend
         for path in read_run_record(workspace, name).files
     }
 
 
-def _list_recorded_backends(workspace: Path) -> list[str]:
+def list_recorded_backends(workspace: Path) -> list[str]:
+    """Return the backends that have a record in a workspace."""
     folder = workspace / RECORD_FOLDER
-    return sorted(path.stem for path in folder.glob("*.json")) if folder.is_dir() else []
+    records = folder.glob("*.json") if folder.is_dir() else ()
+    # In a project's own folder, what was seen of its robots stands there, too.
+    return sorted(path.stem for path in records if path.name != PurePosixPath(RECORD_FILE).name)
 
 
 def write_git_attributes(workspace: Path, old_text: str) -> str:
@@ -170,11 +174,11 @@ def write_git_attributes(workspace: Path, old_text: str) -> str:
     """
     paths = {
         path
-        for name in _list_recorded_backends(workspace)
+        for name in list_recorded_backends(workspace)
         for path, file in read_run_record(workspace, name).files.items()
         if not file.is_own and _PLAIN_PATH.match(path)
     }
-    attributes = [f"/{path} merge=union linguist-generated" for path in sorted({*paths, ".gitattributes"})]
+    attributes = [f"/{path} merge=union eol=lf linguist-generated" for path in sorted({*paths, ".gitattributes"})]
     lines = [_ATTRIBUTES_BEGIN, *attributes, _ATTRIBUTES_END] if paths else []
     before, begin, rest = old_text.partition(f"{_ATTRIBUTES_BEGIN}\n")
     after = rest.partition(f"{_ATTRIBUTES_END}\n")[2] if begin else ""

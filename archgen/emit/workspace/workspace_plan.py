@@ -6,10 +6,12 @@ import hashlib
 from collections import defaultdict
 from collections.abc import Collection, Iterable, Iterator, Mapping
 from dataclasses import dataclass, field, replace
+from functools import cached_property
 from typing import Literal
 
 from archgen.emit.workspace.disk_files import DiskFile, DiskReader, GeneratedFile, fold_file_path
 from archgen.emit.workspace.known_fits import KnownFits, digest_fit
+from archgen.emit.workspace.moved_packages import find_moved_packages
 from archgen.emit.workspace.own_code import CodeFinding, CodeReport, has_lost_names, judge_own_code, read_contract
 from archgen.emit.workspace.run_record import (
     RecordedFile,
@@ -178,11 +180,20 @@ class _Planner:
             self._keep(file, entry, "edited" if entry else "foreign")
 
     def _is_merged(self, path: str, entry: RecordedFile, new_data: bytes = b"") -> bool:
-        """Whether git made a file of two that archgen wrote: each of its lines is of one of them, or of the new one."""
+        """Whether git made a file of two that archgen wrote: each of its lines is of one of them, or of the new one.
+
+        One branch may have written it under the name that it had before the other one renamed something.
+        """
         data = self.disk.read_data(path)
-        if len(entry.digests) == 1 and not holds_conflict(data):
-            return False
-        return digest_lines(data) <= split_digests(entry.lines) | digest_lines(new_data)
+        lines, own_lines = digest_lines(data), split_digests(entry.lines) | digest_lines(new_data)
+        is_mixed = len(entry.digests) > 1 or holds_conflict(data) or bool((lines - own_lines) & self._leaving_lines)
+        return is_mixed and lines <= own_lines | self._leaving_lines
+
+    @cached_property
+    def _leaving_lines(self) -> frozenset[str]:
+        """The lines of files that archgen wrote and makes no more, as short digests."""
+        leaving = (each for path, each in self.old_record.files.items() if path not in self.wanted_paths)
+        return frozenset[str]().union(*(split_digests(each.lines) for each in leaving))
 
     def _is_users_own(self, file: GeneratedFile, entry: RecordedFile | None) -> bool:
         was_taken_over = entry is not None and entry.kept and file.path not in self.choices.overwritten
@@ -244,7 +255,10 @@ class _Planner:
         fit = digest_fit(file, disk_digest, meanings, last_meanings)
         if self.fits.is_known(fit):
             return CodeReport((), last_meanings)
-        report = _judge(file, self.disk.read_data(file.path), meanings, self._list_helpers(file.path))
+        data = self.disk.read_data(file.path)
+        report = _judge(file, data, meanings, self._list_helpers(file.path))
+        if moved := tuple(find_moved_packages(file.path, data, self.wanted_paths)):
+            report = replace(report, findings=(*report.findings, *moved))
         if (
             not report.findings
             and report.meanings == last_meanings

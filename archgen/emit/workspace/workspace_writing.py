@@ -131,7 +131,7 @@ def _put_attributes(workspace: Path, staging: Path) -> None:
     elif old_text and not text and not file.is_symlink():
         file.unlink()
     if any(own_file.parent.glob("*.json")):
-        _replace(own_file, b"*.json merge=union linguist-generated\n", staging)
+        _replace(own_file, b"*.json merge=union eol=lf linguist-generated\n", staging)
     else:
         own_file.unlink(missing_ok=True)
 

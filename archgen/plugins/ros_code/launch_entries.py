@@ -119,7 +119,7 @@ def _record_entry(step: StartStep, element: str, place: str) -> dict[str, Any]:
 def _record_scheduling(step: StartStep) -> dict[str, str]:
     """Return the words that give a process its priority and cores, and the name under which a launch file holds them.
 
-    `run_scheduled` stands in front of them, and leaves out what a computer does not allow.
+    A script stands in front of them, and leaves out what a computer does not allow.
     """
     words = step.scheduling.words
     return {"words": " ".join(words), "name": re.sub(r"[^a-z0-9]+", "_", "_".join(words))}

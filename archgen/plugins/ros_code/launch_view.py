@@ -16,7 +16,14 @@ from archgen.plugin.generating import (
     write_place,
 )
 from archgen.plugin.ros import is_ros_1
-from archgen.plugin.starting import StartStep, find_network_variables, find_wanted_steps, make_start_plan
+from archgen.plugin.starting import (
+    SCHEDULING_SCRIPT,
+    StartStep,
+    find_network_variables,
+    find_wanted_steps,
+    make_start_plan,
+    record_dds_profile,
+)
 from archgen.plugins.ros_code.launch_entries import record_container_entry, record_node_entry
 from archgen.plugins.ros_code.package_facts import RosdepKeys, record_package_facts
 
@@ -106,10 +113,12 @@ def _record_host(
         "place": write_place(element.at) if element else "",
         "package": make_ros_name(f"{context.architecture.project.id}_bringup"),
         "network": [{"name": name, "value": value} for name, value in network.items()],
+        "dds_profile": record_dds_profile(context.architecture, host),
         "entries": entries,
         "phases": _group_by_phase(entries, ros),
         "simulated_time": times[0] if times else None,
         "schedulings": _list_schedulings(entries),
+        "scheduling_script": SCHEDULING_SCRIPT,
         "states": [
             {"node": step.ros.full_name, "transitions": [words[-1] for words in step.transitions]}
             for step in steps
@@ -168,11 +177,12 @@ def _list_dependencies(
             name
             for name, is_needed in (
                 ("run_program", ros == 1 and has_programs),
-                ("run_scheduled", _list_schedulings(all_entries)),
+                (SCHEDULING_SCRIPT, _list_schedulings(all_entries)),
                 ("set_states", ros != 1 and has_states),
             )
             if is_needed
         ],
-        "run_scheduled": Path(__file__).with_name("run_scheduled.sh").read_text(encoding="utf-8"),
+        "scheduling_script": SCHEDULING_SCRIPT,
+        "scheduling_script_text": Path(__file__).with_name("scheduling_script.sh").read_text(encoding="utf-8"),
         "not_started": [entry["step"] for entry in all_entries if entry["form"] == "nobody"],
     }

@@ -38,6 +38,7 @@ def _list_jobs_of_step(
     phase_before = phases[place - 1] if place else None
     common = {
         "network": host["network"],
+        "dds_profile": host["dds_profile"],
         "host": host["name"],
         "place": step["place"],
         "step": step,

@@ -26,6 +26,7 @@ from archgen.plugin.starting import (
     has_substitution,
     make_start_plan,
     name_waits,
+    record_dds_profile,
 )
 from archgen.plugins.start_scripts.start_jobs import list_jobs, list_phase_needs, list_seen_signs
 
@@ -96,6 +97,7 @@ def _record_host(
         "title": element.title if element else "Computer of what has no host",
         "address": element.network_name if element else host or "localhost",
         "network": [{"name": name, "value": value} for name, value in find_network_variables(own_steps).items()],
+        "dds_profile": record_dds_profile(architecture, host),
         "phases": list(dict.fromkeys(step.phase for step in shown_steps)),
         "steps": [
             {

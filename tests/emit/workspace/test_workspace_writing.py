@@ -502,13 +502,30 @@ def test_lines_that_somebody_took_away_are_no_merge(tmp_path: Path) -> None:
     assert verbs(generate(tmp_path, files(a="1\n2\n3\n4\n"))) == {"a": "edited"}
 
 
+@pytest.mark.parametrize(
+    ("text", "verb"),
+    [
+        ("1\nby us\n3\n", "merged"),
+        ("<<<<<<< HEAD\nby us\n=======\n2 new\n>>>>>>> theirs\n", "merged"),
+        ("1\n3\n", "edited"),
+        ("1\nby us\nby hand\n", "edited"),
+    ],
+)
+def test_one_branch_renamed_what_the_other_changed(tmp_path: Path, text: str, verb: str) -> None:
+    """Git follows a file to its new name, and archgen knows the lines that it wrote under the old one."""
+    generate(tmp_path, files(old="1\nby us\n3\n", new="1\n2 new\n3\n"))
+    (tmp_path / "old").unlink()
+    (tmp_path / "new").write_text(text)
+    assert verbs(generate(tmp_path, files(new="1\n2 new\nby us too\n3\n")))["new"] == verb
+
+
 def test_attributes_of_the_user_stay(tmp_path: Path) -> None:
     run_git(tmp_path, "init", "-q")
     (tmp_path / ".gitattributes").write_text("*.png binary\n")
     generate(tmp_path, files(a="1"))
     text = (tmp_path / ".gitattributes").read_text()
     assert text.startswith("*.png binary\n# archgen: ")
-    assert "\n/a merge=union linguist-generated\n" in text
+    assert "\n/a merge=union eol=lf linguist-generated\n" in text
     assert (tmp_path / ".archgen" / ".gitattributes").exists()
     (tmp_path / ".gitattributes").write_text(f"{text}*.jpg binary")
     generate(tmp_path, files(b="1"))

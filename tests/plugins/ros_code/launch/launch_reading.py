@@ -36,6 +36,7 @@ ROS_2_TAGS: Mapping[str, Mapping[str, re.Pattern[str]]] = {
         "value": re.compile(r"\$\(var (prefix|scheduling)\)"),
     },
     "let": {"name": _TEXT, "value": _TEXT, "if": _TEXT, "unless": _TEXT},
+    "group": {},
     "include": {"file": _TEXT, "if": _TEXT},
     "node": _NODE,
     "node_container": _NODE,
@@ -65,8 +66,9 @@ ROS_2_REQUIRED: Mapping[str, frozenset[str]] = {
 }
 ROS_2_CHILDREN: Mapping[str, frozenset[str]] = {
     "launch": frozenset(
-        {"arg", "set_env", "let", "include", "node", "node_container", "load_composable_node", "executable"}
+        {"arg", "set_env", "let", "group", "node", "node_container", "load_composable_node", "executable"}
     ),
+    "group": frozenset({"include"}),
     "include": frozenset({"arg"}),
     "node": frozenset({"env", "remap", "param"}),
     "node_container": frozenset({"env", "remap", "param", "composable_node"}),

@@ -75,8 +75,9 @@ def test_who_looks_for_a_node_is_in_its_network(workspace: Path) -> None:
     names = ("ROS_AUTOMATIC_DISCOVERY_RANGE", "ROS_DOMAIN_ID", "ROS_STATIC_PEERS")
     texts = _list_texts(workspace, "head")
     # A launch file says it once, for all that it starts.
-    assert re.findall(r'<(?:set_)?env name="(\w+)"', texts["launch"]) == list(names)
-    assert re.findall(r"^export (\w+)=", texts["script"], re.MULTILINE) == list(names)
+    profile = "FASTRTPS_DEFAULT_PROFILES_FILE"
+    assert re.findall(r'<(?:set_)?env name="(\w+)"', texts["launch"]) == [*names, profile]
+    assert re.findall(r"^export (\w+)=", texts["script"], re.MULTILINE) == [*names, profile]
     started = [line for line in texts["units"].splitlines() if line.startswith("ExecStart=")]
     assert len(started) == 4
     services = yaml.safe_load(texts["compose"])["services"].values()
@@ -95,6 +96,21 @@ def test_a_container_hands_on_without_a_copy_what_rclcpp_lets_it(workspace: Path
     for reader, text in _list_texts(workspace, "head").items():
         if reader != "launch":
             assert text.count("use_intra_process_comms:=true") == 2, reader
+
+
+@pytest.mark.parametrize(
+    ("host", "addresses"), [("head", ["127.0.0.1", "10.0.0.2"]), ("base", None), ("desk", None)], ids=str
+)
+def test_dds_uses_the_interface_of_the_only_link(workspace: Path, host: str, addresses: list[str] | None) -> None:
+    """An address that is a number, of a host on one link, is that of its interface; others may have more of them."""
+    paths = [workspace / f"start/dds/{host}.xml", workspace / f"src/rover_bringup/launch/hosts/{host}.dds.xml"]
+    assert [each.exists() for each in paths] == [bool(addresses)] * 2
+    for reader, text in _list_texts(workspace, host).items():
+        assert text.count("FASTRTPS_DEFAULT_PROFILES_FILE") == (
+            (addresses and {"launch": 1, "script": 5, "units": 4, "compose": 4}[reader]) or 0
+        )
+    for path in paths if addresses else ():
+        assert re.findall("<address>(.*?)</address>", path.read_text()) == addresses
 
 
 def test_a_license_stands_in_every_package(workspace: Path) -> None:

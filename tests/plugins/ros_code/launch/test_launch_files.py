@@ -264,7 +264,7 @@ def test_hostile_texts_break_out_of_nothing(attack: str, ros: int, tmp_path: Pat
     assert len(files) == 4
     for file in files:
         root = read_launch_file(file, ros)
-        assert {each.tag for each in root} <= {"arg", "include", "node", "node_container", "executable"}
+        assert {each.tag for each in root} <= {"arg", "group", "include", "node", "node_container", "executable"}
     ET.parse(package / "package.xml")  # noqa: S314 - of archgen itself
     for file in package.rglob("*.yaml"):
         assert isinstance(yaml.safe_load(file.read_text(encoding="utf-8")), dict)
@@ -379,7 +379,7 @@ def test_processes_start_with_the_priorities_and_cores_of_timing(ros: int, distr
     # Above, one argument for all computers; a computer is not called as an argument that is there already.
     system = ET.parse(package / "launch" / f"bot.{ending}").getroot()  # noqa: S314 - just generated
     assert [each.get("name") for each in system.findall("arg")] == ["prefix", "host_prefix", "pc", "scheduling"]
-    passed = {str(each.get("file"))[-20:]: [arg.get("name") for arg in each] for each in system.findall("include")}
+    passed = {str(each.get("file"))[-20:]: [arg.get("name") for arg in each] for each in system.iter("include")}
     assert list(passed.values()) == [["prefix", "scheduling"], ["prefix"]]
 
 

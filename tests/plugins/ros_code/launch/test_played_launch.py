@@ -47,14 +47,18 @@ groups:
       planner: {outputs: {plan: std_msgs/String}, timing: {rate: 5 Hz, core: 0, priority: 7}}
       eye: {outputs: {picture: std_msgs/String}}
       finder: {inputs: {picture: eye.picture, plan: planner.plan}}
+      recorder: {inputs: {plan: planner.plan}}
 hosts:
   pc: {address: 10.0.0.1, cores: 2}
   arm: {address: 10.0.0.2}
+  zone: {title: Of others, environment: {ROS_AUTOMATIC_DISCOVERY_RANGE: SUBNET}}
+links: {cable: [pc, arm]}
 containers: {seeing: {host: pc}}
 nodes:
   planner: {implements: planner, host: pc}
   eye: {implements: eye, container: seeing}
   finder: {implements: finder, container: seeing}
+  recorder: {implements: recorder, host: zone}
 """
 EXPECTED = {
     "/brain/planner": {
@@ -128,12 +132,18 @@ def test_it_resolves_variables_scheduling_and_shared_memory(tmp_path: Path) -> N
         assert all("<node launch-prefix=" in each for each in warnings), done.stderr
         structure = yaml.safe_load(done.stdout)["structure"]
         (arguments,) = (each["args"] for name, each in structure["scopes"].items() if name.endswith("/pc.launch.xml"))
-        assert [value for name, value in arguments.items() if name not in {"pc", "prefix", "scheduling"}] == [prefix]
+        assert [value for name, value in arguments.items() if name.startswith("chrt")] == [prefix]
         nodes = structure["nodes"]
         variables = {each["name"]: each["value"] for each in nodes["/planner"]["env"]}
         assert variables == {
             "ROS_AUTOMATIC_DISCOVERY_RANGE": "LOCALHOST",
             "ROS_STATIC_PEERS": "10.0.0.2",
+            "FASTRTPS_DEFAULT_PROFILES_FILE": str(workspace / "install/share/rover_bringup/launch/hosts/pc.dds.xml"),
+            "MODE": 'a "b" <c>',
+        }
+        # What one computer's file sets ends with it.
+        assert {each["name"]: each["value"] for each in nodes["/recorder"]["env"]} == {
+            "ROS_AUTOMATIC_DISCOVERY_RANGE": "SUBNET",
             "MODE": 'a "b" <c>',
         }
         assert nodes["/seeing"]["is_container"]

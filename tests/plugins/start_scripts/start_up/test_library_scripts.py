@@ -291,3 +291,13 @@ def test_parameters_of_a_second_robot_have_their_names(tools: Tools) -> None:
     tools.run("run.sh", *setting, *time, "--", "true", START_FOLDER="/", START_PREFIX="/r2")
     told = (tools.folder / "param").read_text(encoding="utf-8")
     assert told == 'set /r2/arm/x 1\nload a.yaml /r2/arm\nset /use_sim_time true\nset /r2/arm/y "2"\n'
+
+
+def test_what_respawns_has_no_end_of_it_in_systemd(tmp_path: Path) -> None:
+    """By itself systemd gives up after five starts in ten seconds, where a launch file goes on."""
+    (tmp_path / "archgen.yaml").write_text(
+        "nodes: {a: {kind: program, command: a, start: {respawn: true}}, b: {kind: program, command: b}}\n"
+    )
+    archgen_here("generate", "start", "-o", tmp_path / "ws", cwd=tmp_path)
+    units = {each.name: each.read_text() for each in (tmp_path / "ws").rglob("*.service")}
+    assert [name[-9:] for name, text in units.items() if "StartLimitIntervalSec=0" in text] == ["a.service"]

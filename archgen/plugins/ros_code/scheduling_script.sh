@@ -1,6 +1,6 @@
 #!/bin/sh
 # Starts a program with the priority and on the cores of the architecture, as far as this computer allows it. Made by archgen.
-# Usage: run_scheduled [chrt -f PRIORITY] [taskset -c CORES] -- PROGRAM [WORD]...
+# Usage: this script, [chrt -f PRIORITY] [taskset -c CORES] -- PROGRAM [WORD]...
 allowed='' refused=''
 while [ "$1" != -- ]; do
   words="$1 $2 $3"
