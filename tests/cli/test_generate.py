@@ -328,13 +328,9 @@ def test_what_cannot_be_made_is_refused(
 def test_other_ends_of_lines_are_no_edit(run: Run, robot: Path, tmp_path: Path) -> None:
     """Git and editors of Windows write them."""
     run("generate", "code", "-C", robot, "-o", tmp_path / "ws")
-    before = contents(tmp_path / "ws")
     file = tmp_path / "ws" / "code" / "Scan.txt"
     file.write_bytes(file.read_bytes().replace(b"\n", b"\r\n"))
-    ran = run("generate", "code", "-C", robot, "-o", tmp_path / "ws")
-    assert ran.status == 0
-    assert "1 changed" in ran.out
-    assert contents(tmp_path / "ws") == before
+    assert run("generate", "code", "-C", robot, "-o", tmp_path / "ws", "--check").status == 0
 
 
 def test_a_link_is_told_once(run: Run, robot: Path, tmp_path: Path) -> None:
