@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 import click
 
 from archgen.cli import command_support, shared_options
+from archgen.diagnostics.safe_text import make_visible
 
 if TYPE_CHECKING:
     from archgen.emit.workspace.workspace_plan import FileStep
@@ -167,8 +168,6 @@ def _print_patch(result: WorkspaceResult) -> None:
 
 
 def _print_result(result: WorkspaceResult, backend: str, *, dry_run: bool, only_check: bool) -> None:
-    from archgen.diagnostics.safe_text import make_visible
-
     plan = result.plan
     if plan is None:
         click.echo("Nothing was written.", err=True)
@@ -199,8 +198,6 @@ def _print_result(result: WorkspaceResult, backend: str, *, dry_run: bool, only_
 
 
 def _print_code_findings(step: FileStep) -> None:
-    from archgen.diagnostics.safe_text import make_visible
-
     for finding in step.findings:
         path = finding.path or step.path
         place = f"{path}:{finding.line}:{finding.column}" if finding.line else path

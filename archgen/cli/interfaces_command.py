@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, NoReturn
 
 import click
 
-from archgen.cli import command_support, measured_recordings, shared_options
+from archgen.cli import command_support, shared_options
 from archgen.diagnostics.safe_text import make_visible
 
 if TYPE_CHECKING:
@@ -76,6 +76,7 @@ def command(  # noqa: PLR0913 - one for each option
     Each topic, service and action with its version, its message, what is promised and what is only expected of it, chains,
     requirements, open points, and who serves and who reads it. `archgen interfaces --between certh sssa -o certh-sssa.docx`
     """
+    from archgen.cli import measured_recordings
     from archgen.products import agreement_documents, product_writing
     from archgen.products.output_options import OutputOptions
 

@@ -7,6 +7,7 @@ from pathlib import Path
 import click
 
 from archgen.cli import command_support, shared_options
+from archgen.diagnostics.safe_text import make_visible
 
 
 @click.command("sign")
@@ -46,7 +47,6 @@ def command(  # noqa: PLR0913 - one for each option
     """
     from datetime import datetime
 
-    from archgen.diagnostics.safe_text import make_visible
     from archgen.git import GitError
     from archgen.products import agreement_documents, agreement_signing, product_writing
     from archgen.products.output_options import OutputOptions
