@@ -117,7 +117,7 @@ Reader = Callable[[Any, ReadContext], Any]
 
 @dataclass(frozen=True, slots=True)
 class KeySpec:
-    """One key of a kind, most of them as the description of the language has them (`described_keys`). A name that ends in
+    """One key of a kind, most of them as the description of the language has them (`derive_keys`). A name that ends in
     a dot stands for all keys that begin with it: `read` returns a mapping from the rest of the key to the value.
 
     `read` returns the value in normal form: equal values mean the same, however they are written. Without it the value
