@@ -14,9 +14,12 @@ from typing import TYPE_CHECKING, NoReturn, TextIO, TypeVar
 import click
 
 from archgen.cli.shared_options import find_asked_variants
+from archgen.diagnostics.common_wording import join_first
 from archgen.diagnostics.diagnostic import Diagnostic, Severity, settle_diagnostics, sort_gravest_first
 from archgen.diagnostics.safe_text import make_visible
 from archgen.diagnostics.suggestions import did_you_mean
+from archgen.diagnostics.text_columns import find_width
+from archgen.products.output_options import OutputOptions
 
 if TYPE_CHECKING:
     from archgen.diagnostics.source_span import SourceTexts
@@ -27,7 +30,6 @@ if TYPE_CHECKING:
     from archgen.model.selector_evaluation import Selection
     from archgen.model.selector_parser import SelectorProblem
     from archgen.pipeline import CheckedProject, VersionCache
-    from archgen.products.output_options import OutputOptions
     from archgen.products.trusted_backends import TrustedRevision
     from archgen.views.changes.site_changes import SiteChanges
     from archgen.views.pages.report_outline import DetailLevel
@@ -84,7 +86,6 @@ def print_excerpts(
     findings: Sequence[Diagnostic], sources: SourceTexts, stream: TextIO, *, is_waiting: bool = False
 ) -> None:
     """Print findings with the lines of these sources. `is_waiting` is whether rules wait for errors to be mended."""
-    from archgen.diagnostics.text_columns import find_width
     from archgen.emit.terminal import findings_text
 
     colour = findings_text.wants_colour(stream, os.environ)
@@ -125,8 +126,6 @@ def make_drawing_options(
     checked_project: CheckedProject, selector_text: str | None, level: DetailLevel | None, revision: str | None = None
 ) -> OutputOptions:
     """Return what all outputs with pictures share: the selected part, and progress and warnings on this terminal."""
-    from archgen.products.output_options import OutputOptions
-
     selection = select_or_exit(checked_project, selector_text)
     return OutputOptions(selection, selector_text or "", level, revision, make_progress_printer(), print_warning)
 
@@ -365,8 +364,6 @@ def require_host(architecture: Architecture, host: str) -> None:
 
 def require_partner(architecture: Architecture, name: str) -> Partner:
     """Return a partner by his id. Raise UsageError where a project has none of this id."""
-    from archgen.diagnostics.common_wording import join_first
-
     partners = architecture.partners
     if name not in partners:
         known = f"the partners are {join_first(list(partners), 8)}" if partners else "the project has no partners"

@@ -13,6 +13,7 @@ import click
 from archgen.cli import command_support, shared_options
 from archgen.diagnostics.diagnostic import sort_gravest_first
 from archgen.diagnostics.safe_text import make_visible
+from archgen.products.output_options import OutputOptions
 
 if TYPE_CHECKING:
     from archgen.compare import Comparison
@@ -98,7 +99,6 @@ def _write_comparison(
 ) -> str | bytes:
     from archgen.emit.terminal.findings_text import wants_colour
     from archgen.products import comparison_documents as documents
-    from archgen.products.output_options import OutputOptions
 
     if form == "github":
         return _write_github(comparison, new_version)

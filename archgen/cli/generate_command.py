@@ -10,6 +10,7 @@ import click
 
 from archgen.cli import command_support, shared_options
 from archgen.diagnostics.safe_text import make_visible
+from archgen.products.output_options import OutputOptions
 
 if TYPE_CHECKING:
     from archgen.emit.workspace.workspace_plan import FileStep
@@ -85,7 +86,6 @@ def command(  # noqa: C901, PLR0913 - one for each option
     the project lists in `generate`. Files of others are never touched, and neither are those that somebody changed since
     archgen wrote them.
     """
-    from archgen.products.output_options import OutputOptions
     from archgen.products.workspace_product import WorkspaceRequest, write_workspace
 
     if name is None and (overwrite or keep or settings):

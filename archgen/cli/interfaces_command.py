@@ -10,6 +10,7 @@ import click
 
 from archgen.cli import command_support, shared_options
 from archgen.diagnostics.safe_text import make_visible
+from archgen.products.output_options import OutputOptions
 
 if TYPE_CHECKING:
     from archgen.pipeline import CheckedProject
@@ -78,7 +79,6 @@ def command(  # noqa: PLR0913 - one for each option
     """
     from archgen.cli import measured_recordings
     from archgen.products import agreement_documents, product_writing
-    from archgen.products.output_options import OutputOptions
 
     if since and signed:
         msg = "--signed marks what changed as --since does: give one of them"

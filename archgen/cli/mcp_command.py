@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING
 import click
 
 from archgen.cli import shared_options, verb_module
+from archgen.diagnostics.diagnostic import Severity
 from archgen.diagnostics.safe_text import format_json
 
 if TYPE_CHECKING:
@@ -125,7 +126,6 @@ class ProjectTools:
 
     def apply(self, proposal: int) -> str:
         """Write what was proposed under a number, if the files are as they were then and it brings no error; `archgen undo` takes it back."""
-        from archgen.diagnostics.diagnostic import Severity
         from archgen.edit.element_edit import EditRefusedError
         from archgen.emit.file_tree import OutputError
         from archgen.products.written_edits import write_edits

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, get_args
 import click
 
 from archgen.cli import command_support, element_adding, shared_options
+from archgen.diagnostics.common_wording import join_words
 from archgen.diagnostics.diagnostic import Diagnostic
 from archgen.diagnostics.safe_text import make_visible
 from archgen.diagnostics.source_span import NO_SPAN
@@ -93,7 +94,6 @@ def add_instance(  # noqa: PLR0913, PLR0917 - one for each option
     dry_run: bool,
 ) -> None:
     """Add an instance of a component type, with its inputs to be filled. ID is GROUP.ID; TYPE is as in `filter<Pose>`."""
-    from archgen.diagnostics.common_wording import join_words
     from archgen.edit import element_place
 
     checked_project = command_support.check_or_exit(project)

@@ -8,6 +8,7 @@ import click
 
 from archgen.cli import command_support, shared_options
 from archgen.diagnostics.safe_text import make_visible
+from archgen.products.output_options import OutputOptions
 
 
 @click.command("sign")
@@ -49,7 +50,6 @@ def command(  # noqa: PLR0913 - one for each option
 
     from archgen.git import GitError
     from archgen.products import agreement_documents, agreement_signing, product_writing
-    from archgen.products.output_options import OutputOptions
 
     form = command_support.choose_format(None, output, agreement_documents.FORMAT_BY_ENDING, "docx")
     checked_project = command_support.check_before_writing(project, keep_going=False)

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING
 import click
 
 from archgen.cli import command_support, shared_options
+from archgen.diagnostics.common_wording import join_first
 from archgen.diagnostics.diagnostic import Severity
 from archgen.diagnostics.safe_text import make_visible
 from archgen.diagnostics.suggestions import did_you_mean
@@ -138,8 +139,6 @@ def _describe_flood(time: Fraction) -> str:
 
 
 def _require_chains(asked_ids: tuple[str, ...], chain_ids: tuple[str, ...]) -> None:
-    from archgen.diagnostics.common_wording import join_first
-
     for name in asked_ids:
         if name not in chain_ids:
             guess = did_you_mean(name, chain_ids)
