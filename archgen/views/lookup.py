@@ -8,6 +8,7 @@ from typing import TypeVar
 
 from archgen.diagnostics.diagnostic import Diagnostic
 from archgen.frozen import dataclass, field, replace
+from archgen.grouping import group_pairs
 from archgen.model.architecture import Architecture, Chain
 from archgen.model.component import Component, Connection, Input, Output
 from archgen.model.component_nesting import find_component, list_members, list_surrounding, list_written_connections
@@ -231,9 +232,7 @@ def _list_ends(
 
 def group_values(pairs: Iterable[tuple[str, T]]) -> dict[str, tuple[T, ...]]:
     """Collect values by key; keys and values keep the order in which they come."""
-    lists_by_key: defaultdict[str, list[T]] = defaultdict(list)
-    for key, item in pairs:
-        lists_by_key[key].append(item)
+    lists_by_key = group_pairs(pairs)
     return {key: tuple(items) for key, items in lists_by_key.items()}
 
 

@@ -18,6 +18,7 @@ from archgen.edit.refactoring.model_proof import compare_models, find_followers,
 from archgen.edit.refactoring.moved_lines import EntryMove, MovedLines, Place
 from archgen.edit.refactoring.renamed_ids import RenamedIds
 from archgen.frozen import dataclass, replace
+from archgen.grouping import group_pairs
 from archgen.link.reference_resolution import list_endings
 from archgen.project.source_reading import PASS_FOLDER
 from archgen.syntax.yaml_writer import format_scalar
@@ -234,9 +235,7 @@ def _place_moved(place: Callable[[Span], Place], moved: MovedLines) -> Callable[
 
 def place_after(edits: Sequence[TextEdit]) -> Callable[[Span], Place]:
     """Return what says where a span begins after some edits within lines."""
-    edits_by_line: dict[tuple[str, int], list[TextEdit]] = {}
-    for edit in edits:
-        edits_by_line.setdefault((edit.span.file, edit.span.line), []).append(edit)
+    edits_by_line = group_pairs(((edit.span.file, edit.span.line), edit) for edit in edits)
 
     def place(span: Span) -> Place:
         before = (each for each in edits_by_line.get((span.file, span.line), ()) if each.span.column < span.column)
