@@ -111,7 +111,7 @@ def command(  # noqa: PLR0913, PLR0917 - one for each option
     _refuse_writing(written, recordings, adopt, propose, applies=applies)
     checked_project = command_support.check_or_exit(project)
 
-    from archgen.cli import measured_recordings, timing_printing
+    from archgen.cli import timing_printing
 
     command_support.print_findings_above(checked_project, lowest_severity=Severity.ERROR)
     request = timing_printing.TimingRequest(
@@ -130,6 +130,8 @@ def command(  # noqa: PLR0913, PLR0917 - one for each option
     elif propose is not None:
         timing_printing.print_proposal(request, keep_triggers=propose != ANY_PROPOSAL, applies=applies)
     elif recordings:
+        from archgen.cli import measured_recordings
+
         measured_recordings.answer_recordings(
             checked_project, request.architecture, recordings, adopt, as_json=request.as_json
         )

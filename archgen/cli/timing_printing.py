@@ -15,8 +15,6 @@ from archgen.diagnostics.common_wording import join_first
 from archgen.diagnostics.safe_text import format_json, make_visible
 from archgen.diagnostics.suggestions import did_you_mean
 from archgen.diagnostics.text_columns import find_width, wrap_line
-from archgen.edit.configuration_patch import plan_patch
-from archgen.edit.element_edit import EditRefusedError, FileEdit
 from archgen.emit.data import timing_json
 from archgen.emit.terminal import chain_remedies, chain_text, timing_answers, timing_text
 from archgen.emit.terminal.findings_text import wants_colour
@@ -164,6 +162,9 @@ def print_budget(request: TimingRequest, chain_id: str) -> None:
 
 def print_proposal(request: TimingRequest, *, keep_triggers: bool, applies: bool) -> None:
     """Print a configuration in which chains are less late (`--propose`), with its patch; or write it (`--apply`)."""
+    from archgen.edit.configuration_patch import plan_patch
+    from archgen.edit.element_edit import EditRefusedError, FileEdit
+
     architecture = request.architecture
     analysis, chains = _analyse_chains(architecture)
     trials = ChangeTrials(architecture, analysis, apply_overrides, proposals.MAX_TRIES)
