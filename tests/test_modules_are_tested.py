@@ -197,11 +197,11 @@ def test_the_test_executes_what_it_covers(
 @pytest.mark.slow
 def test_what_a_test_does_not_execute_is_noticed(tmp_path: Path) -> None:
     rows = {
-        "tests/test_frozen.py": ["archgen.frozen", "archgen.forge.comment_post"],
+        "tests/test_frozen.py": ["archgen.frozen", "archgen.forge.pull_request"],
         "tests/test_float_sums.py": ["archgen.frozen"],
     }
     shares = _executed_shares(rows, tmp_path / "measured")
     assert shares["tests/test_frozen.py"]["archgen.frozen"] > LEAST_EXECUTED_SHARE
-    assert shares["tests/test_frozen.py"]["archgen.forge.comment_post"] == 0
+    assert shares["tests/test_frozen.py"]["archgen.forge.pull_request"] == 0
     # What one file executes counts for no other.
     assert shares["tests/test_float_sums.py"]["archgen.frozen"] < LEAST_EXECUTED_SHARE

@@ -38,7 +38,7 @@ MADE = {
     "archgen/plugins/tables/table_files.py:_add_rows": "one set of characters, taken for good",
     "archgen/project/source_reading.py:_looks_like_slice": "known words at the beginning of a line",
     "archgen/schema/key_wording.py:diagnose_wrong_key": SCHEMA,
-    "archgen/schema/list_wording.py:split_ids": SCHEMA,
+    "archgen/schema/schema_wording.py:split_ids": SCHEMA,
     "archgen/schema/schema_wording.py:_describe_wrong_value": SCHEMA,
     "archgen/schema/schema_wording.py:_find_list_help": SCHEMA,
     "archgen/schema/schema_wording.py:_find_value_help": SCHEMA,

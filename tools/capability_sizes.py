@@ -22,6 +22,7 @@ CAPABILITIES: Mapping[str, tuple[str, ...]] = {
         "bringup",
         "frozen.py",
         "regular_files.py",
+        "grouping.py",
     ),
     "the language: YAML, schema, short forms": ("syntax", "schema", "language"),
     "the model, selectors": ("model", "diagnostics"),

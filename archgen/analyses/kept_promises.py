@@ -9,6 +9,7 @@ from fractions import Fraction
 from archgen.diagnostics.diagnostic import Diagnostic, Label, Severity
 from archgen.diagnostics.source_span import NO_SPAN, Span
 from archgen.frozen import NamedTuple
+from archgen.grouping import group_pairs
 from archgen.model.architecture import Architecture
 from archgen.model.component_nesting import list_described_outputs
 from archgen.model.node import Endpoint
@@ -108,9 +109,7 @@ def judge_promises(
         return
     paces = _find_paces(architecture, analysis)
     leaves = {leaf for output, _ in promising for leaf in architecture.leaf_ports_of("output", output)}
-    ages: dict[str, list[tuple[Arc, TimingValue]]] = defaultdict(list)
-    for arc, age in find_sent_ages(analysis, leaves):
-        ages[arc.output].append((arc, age))
+    ages = group_pairs((arc.output, (arc, age)) for arc, age in find_sent_ages(analysis, leaves))
     promising.sort(key=lambda each: each[0] not in architecture.outputs)
     for output, promise in promising:
         for leaf in architecture.leaf_ports_of("output", output):

@@ -11,7 +11,6 @@ from archgen.frozen import NamedTuple
 from archgen.model.architecture import Architecture, Policy, SourceDemand
 from archgen.model.component import Connection, Input, Output
 from archgen.model.selector_evaluation import SelectorEvaluator
-from archgen.model.selector_parser import SelectorProblem
 
 
 class WrittenSelector(NamedTuple):
@@ -67,7 +66,7 @@ def wrong_selector(architecture: Architecture) -> Iterator[Diagnostic]:
             yield Diagnostic(
                 "wrong-selector",
                 f"in the selector of {written_selector.owner_phrase}: {problem.message}",
-                _problem_span(written_selector, problem),
+                problem.locate(written_selector.text, written_selector.span),
                 severity=Severity.WARNING if problem.severity == "warning" else None,
                 help=problem.help,
                 element=written_selector.element,
@@ -122,18 +121,6 @@ def _may_be_unread(architecture: Architecture, path: str) -> bool:
     return not architecture.unread_keys.isdisjoint(path.split(".")[-2:]) or (
         architecture.partial and ("*" in path or ":" in path)
     )
-
-
-def _problem_span(written_selector: WrittenSelector, problem: SelectorProblem) -> Span:
-    """Return the span of the part of a selector that a problem is about, else of the whole selector."""
-    span = written_selector.span
-    # The span includes quotes if there are any: it is longer than the text by 0 or 2 columns. Anything else (escapes,
-    # several lines) does not map to columns of the text.
-    quote_width = span.end_column - span.column - len(written_selector.text)
-    if span.line != span.end_line or quote_width not in {0, 2}:
-        return span
-    start = span.column + quote_width // 2
-    return span._replace(column=start + problem.start, end_column=start + max(problem.end, problem.start + 1))
 
 
 def find_forbidden_flows(

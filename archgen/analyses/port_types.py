@@ -8,6 +8,7 @@ from collections.abc import Iterator, Mapping
 from archgen.diagnostics.diagnostic import Diagnostic, Label, Severity
 from archgen.diagnostics.source_span import NO_SPAN, Span
 from archgen.diagnostics.suggestions import did_you_mean
+from archgen.grouping import group_pairs
 from archgen.model.architecture import Architecture
 from archgen.model.component import Connection, Input, Output
 from archgen.model.message_types import flow_of, full_message_name
@@ -156,9 +157,7 @@ def _find_divided_memory(architecture: Architecture) -> Iterator[Diagnostic]:
 
 def _find_readers_of_physical_outputs(architecture: Architecture) -> Iterator[Diagnostic]:
     """Report what nodes subscribe to, or call, for inputs whose sources are all physical."""
-    outputs_by_input = defaultdict[str, list[Output]](list)
-    for edge in architecture.edges:
-        outputs_by_input[edge.input].append(architecture.outputs[edge.output])
+    outputs_by_input = group_pairs((edge.input, architecture.outputs[edge.output]) for edge in architecture.edges)
     for node in architecture.nodes.values():
         for use in node.uses:
             entry = architecture.inputs.get(use.port or "")

@@ -22,6 +22,7 @@ from archgen.diagnostics.diagnostic import Diagnostic, Label, Severity
 from archgen.diagnostics.source_span import NO_SPAN, Span
 from archgen.diagnostics.suggestions import did_you_mean
 from archgen.frozen import NamedTuple
+from archgen.grouping import group_pairs
 from archgen.model.architecture import Architecture
 from archgen.model.node import Endpoint, Qos, Topic, UseKind
 from archgen.model.parameter import format_parameter
@@ -200,9 +201,7 @@ def incompatible_qos(architecture: Architecture) -> Iterator[Diagnostic]:
             [each for each in ends if architecture.nodes[each.node].written] for ends in (topic.writers, topic.readers)
         )
         # Many ends of one topic have few different settings, and most of these agree.
-        readers_by_qos: dict[tuple[Qos, ...], list[Endpoint]] = {}
-        for reader in readers:
-            readers_by_qos.setdefault(_list_qos(reader), []).append(reader)
+        readers_by_qos = group_pairs((_list_qos(reader), reader) for reader in readers)
         judge_pair = cache(_judge_settings)
         for writer in writers:
             for requested, asking in readers_by_qos.items():

@@ -8,6 +8,7 @@ from fractions import Fraction
 from typing import Literal
 
 from archgen.frozen import dataclass
+from archgen.grouping import group_pairs
 from archgen.model.annotated_elements import list_annotated_elements
 from archgen.model.architecture import Architecture
 from archgen.model.component import Component
@@ -204,10 +205,7 @@ def measure_progress(
             seen=None if seen is None else sum(c.id in seen for c in members),
         )
 
-    owned = defaultdict[str, list[Component]](list)
-    for each in all_components:
-        for owner in dict.fromkeys(each.owners):
-            owned[owner].append(each)
+    owned = group_pairs((owner, each) for each in all_components for owner in dict.fromkeys(each.owners))
 
     def list_rows() -> Iterator[ProgressCounts]:
         yield measure_set("project", project.id, project.title, all_components)

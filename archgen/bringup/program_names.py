@@ -11,6 +11,7 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from archgen.derivation.ros_names import shared_topic_names
 from archgen.derivation.wire.remap_rules import ACTION_PARTS, NodeNames, list_written_remaps
 from archgen.frozen import dataclass
+from archgen.grouping import group_pairs
 from archgen.model.architecture import Architecture
 from archgen.model.code_names import make_camel_name, make_identifier_in, make_ros_name, make_snake_name
 from archgen.model.node import Endpoint, Node
@@ -100,11 +101,7 @@ def group_by_program(architecture: Architecture, nodes: Iterable[Node]) -> dict[
 
 def index_endpoints(architecture: Architecture) -> dict[str, list[Endpoint]]:
     """Return what each node does over ROS, by the node's id."""
-    index: dict[str, list[Endpoint]] = {}
-    for endpoint in architecture.endpoints:
-        if endpoint.medium == "ros":
-            index.setdefault(endpoint.node, []).append(endpoint)
-    return index
+    return group_pairs((endpoint.node, endpoint) for endpoint in architecture.endpoints if endpoint.medium == "ros")
 
 
 def group_endpoints(
@@ -142,9 +139,7 @@ def name_endpoints(
 
 def _name_ports(endpoints: Iterable[Endpoint]) -> dict[tuple[str, str, str], list[Endpoint]]:
     """Return what a node does by use, flow and name of the port, with its component's name where two ports have it."""
-    carried_by_place: dict[tuple[str, str, str], list[Endpoint]] = {}
-    for endpoint in endpoints:
-        carried_by_place.setdefault(_place_name(endpoint), []).append(endpoint)
+    carried_by_place = group_pairs((_place_name(endpoint), endpoint) for endpoint in endpoints)
     ports: dict[tuple[str, str, str], list[Endpoint]] = {}
     for (use, flow, short_name), carried in carried_by_place.items():
         has_several_ports = len(carried) > 1 and len({each.port or each.label for each in carried}) > 1

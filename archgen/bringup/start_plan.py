@@ -21,6 +21,7 @@ from archgen.bringup.wait_circles import StartWaits, group_by_waiting, keep_acyc
 from archgen.derivation.wire.remap_rules import NodeNames
 from archgen.derivation.wire.running_state import find_environment
 from archgen.frozen import replace
+from archgen.grouping import group_pairs
 from archgen.model.architecture import Architecture
 from archgen.model.deployment import Container
 from archgen.model.node import Node
@@ -74,9 +75,7 @@ def find_network_variables(steps: Iterable[StartStep]) -> dict[str, str]:
 
 def _gather_awaited(waits: Iterable[Wait], steps: Mapping[str, StartStep]) -> Iterator[AwaitedStep]:
     """Yield what is awaited, what is needed most first. A manager only needs that what it manages was started."""
-    waits_by_step: dict[str, list[Wait]] = {}
-    for wait in waits:
-        waits_by_step.setdefault(wait.awaited, []).append(wait)
+    waits_by_step = group_pairs((wait.awaited, wait) for wait in waits)
     for awaited, its_waits in waits_by_step.items():
         is_managed = all(wait.reason == "manages" for wait in its_waits)
         yield AwaitedStep(

@@ -15,6 +15,7 @@ from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from heapq import heapify, heappop, heappush
 
 from archgen.bringup.plan_shapes import DroppedWait, Wait, WaitReason
+from archgen.grouping import group_pairs
 from archgen.model.architecture import Architecture, PortEdge
 from archgen.model.graph_search import find_strong_components
 from archgen.model.node import Node
@@ -271,7 +272,4 @@ def name_container(architecture: Architecture, container_id: str) -> str:
 
 def group_by_waiting(waits: Iterable[Wait]) -> dict[str, list[Wait]]:
     """Return the waits of each step, those that are needed most first."""
-    grouped: dict[str, list[Wait]] = defaultdict(list)
-    for wait in sorted(waits, key=lambda each: -each.need):
-        grouped[wait.waiting].append(wait)
-    return grouped
+    return group_pairs((wait.waiting, wait) for wait in sorted(waits, key=lambda each: -each.need))

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable
 
 from archgen.checking.checked_project import CheckedProject
-from archgen.checking.interface_loading import read_interface_files
+from archgen.checking.linked_project import read_interface_files
 from archgen.link import interface_sources
 from archgen.link.project_packing import PackedAttachments, PackedProject, has_packed_path, pack_project
 

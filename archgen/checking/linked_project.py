@@ -1,6 +1,8 @@
 """From the table of a project to its architecture, both levels of it.
 
 The day up to which a project's repository has gone: on it rests whether what is deprecated may still be used.
+
+The interface definitions that a project brings itself: files, those in its YAML, those of its types.
 """
 
 from __future__ import annotations
@@ -8,23 +10,58 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from archgen import compose, derivation, link
-from archgen.checking.interface_loading import load_project_interfaces
 from archgen.checking.merged_project import MergedProject
 from archgen.compose.expanded_project import ExpandedProject
 from archgen.derivation.derived_parts import DerivedParts
 from archgen.diagnostics.diagnostic import Diagnostic
 from archgen.frozen import dataclass, replace
-from archgen.link import element_outline, named_files, node_parameter_files
+from archgen.link import element_outline, interface_sources, named_files, node_parameter_files
+from archgen.link.declare.type_declaration import DeclaredTypes
+from archgen.link.interface_sources import TypeMessages
 from archgen.link.link_memory import LinkMemory
 from archgen.link.node_parameter_files import ReadParameters
 from archgen.link.project_types import declare_project_types
 from archgen.link.reference_listening import HeardReferences
 from archgen.model.architecture import Architecture
+from archgen.model.known_interfaces import Interfaces, guess_distro
 from archgen.model.known_parts import KnownParts
+from archgen.project import LoadedProject
+from archgen.syntax import project_files
+from archgen.syntax.yaml_tree import MappingNode, ScalarNode
 
 if TYPE_CHECKING:
-    from archgen.model.architecture import Architecture
     from archgen.syntax.project_files import ProjectFiles
+
+
+def load_project_interfaces(
+    loaded_project: LoadedProject, merged_table: MappingNode, declared_types: DeclaredTypes
+) -> tuple[Interfaces, tuple[Diagnostic, ...]]:
+    """Read the project's own interface definitions, which override the shipped ones: files, `ros.definitions`, types."""
+    texts, diagnostics = read_interface_files(loaded_project)
+    ros_section = merged_table.get("ros")
+    inline_table = ros_section.get("definitions") if isinstance(ros_section, MappingNode) else None
+    entries = inline_table if isinstance(inline_table, MappingNode) else ()
+    inline_definitions = {e.key: (e.value.text, e.value.span) for e in entries if isinstance(e.value, ScalarNode)}
+    known_interfaces, load_diagnostics = interface_sources.load_interfaces(
+        guess_distro(loaded_project.distro),
+        tuple(texts.items()),
+        inline_definitions,
+        TypeMessages(declared_types.definitions, declared_types.message_mentions),
+    )
+    return known_interfaces, (*diagnostics, *load_diagnostics)
+
+
+def read_interface_files(loaded_project: LoadedProject) -> tuple[dict[str, str], tuple[Diagnostic, ...]]:
+    """Read the interface files that the project names; return their texts by path, and what could not be read."""
+    texts, diagnostics = {}, []
+    for file in loaded_project.interface_files:
+        read_file = project_files.read_text_file(loaded_project.files, file)
+        if read_file.problem:
+            diagnostics.append(read_file.problem)
+        else:
+            texts[file] = read_file.text
+            loaded_project.sources.add_text(file, read_file.text)
+    return texts, tuple(diagnostics)
 
 
 class PartMemory:

@@ -1,6 +1,8 @@
 """A merged project is linked and judged by all rules.
 
 Guess the element whose title stands where its id is asked: `owner: LogTech GmbH` means the partner `logtech`.
+
+What a project names beside its YAML: chapters, pictures, parameter files, results of tests.
 """
 
 from __future__ import annotations
@@ -13,23 +15,58 @@ from archgen.checking.all_rules import index_all_rules, list_structural_errors
 from archgen.checking.checked_project import CheckedProject
 from archgen.checking.linked_project import LinkedProject, PartMemory, link_merged_project
 from archgen.checking.merged_project import MergedProject
-from archgen.checking.named_contents import read_named_contents
 from archgen.diagnostics.diagnostic import Diagnostic, Label, Severity, settle_diagnostics
 from archgen.diagnostics.rule_options import OptionValues
 from archgen.diagnostics.source_span import SourceTexts, Span
 from archgen.diagnostics.suggestions import find_closest
-from archgen.findings import (
-    error_aftermath,
-    ignore_comments,
-    instance_findings,
-    rule_table,
-)
+from archgen.findings import error_aftermath, ignore_comments, instance_findings, rule_table
 from archgen.frozen import NamedTuple, replace
 from archgen.installed_plugins import RULES, list_entries
 from archgen.language.language_tables import PLAIN_SECTIONS
+from archgen.link import hint_checks, named_files, node_parameter_files, report_chapters, verification_files
 from archgen.link.known_programs import find_shadowed_packages, find_unlike_programs
+from archgen.link.report_chapters import ReportChapters
 from archgen.model.architecture import Architecture
 from archgen.timing.run_analysis import AnalysisMemory
+
+
+def read_named_contents(
+    merged_project: MergedProject, linked_project: LinkedProject, part_memory: PartMemory | None = None
+) -> tuple[ReportChapters, tuple[Diagnostic, ...]]:
+    """Return the chapters of a project's report, and what is wrong with the files that the project names."""
+    loaded_project, merged_table = merged_project.loaded_project, merged_project.table
+    is_folder = merged_project.is_folder
+    project_chapters, chapter_findings = report_chapters.read_chapters(merged_table, loaded_project.files)
+    missing_pictures = report_chapters.find_missing_pictures(
+        project_chapters, report_chapters.locate_packed_texts(merged_table), loaded_project.sources
+    )
+    files_by_element = tuple(
+        named_files.list_named_files(merged_table, part_memory.named_files if part_memory else None)
+    )
+    project_chapters = replace(project_chapters, image_paths=named_files.list_image_paths(files_by_element))
+    named_file_findings = named_files.find_missing_files(files_by_element, project_chapters, is_folder=is_folder)
+    missing_files = (
+        tuple(node_parameter_files.find_missing_parameter_files(merged_table, loaded_project.files))
+        if is_folder
+        else ()
+    )
+    missing_verifications = verification_files.find_missing_verifications(
+        linked_project.linked_architecture, loaded_project.files if is_folder else None
+    )
+    wrong_hints = (
+        tuple(hint_checks.find_wrong_hints(linked_project.linked_architecture, loaded_project.files))
+        if is_folder
+        else ()
+    )
+    problems = (
+        *chapter_findings,
+        *missing_pictures,
+        *missing_files,
+        *named_file_findings,
+        *missing_verifications,
+        *wrong_hints,
+    )
+    return project_chapters, problems
 
 
 def judge_merged_project(

@@ -13,6 +13,7 @@ from itertools import chain
 from archgen.checking.checked_project import CheckedProject
 from archgen.diagnostics.source_span import NO_SPAN, SourceTexts, Span
 from archgen.frozen import NamedTuple, dataclass, field
+from archgen.grouping import group_pairs
 from archgen.language.language_tables import OFFERS, SECTION_KINDS
 from archgen.link.project_linking import link_type_patterns
 from archgen.link.reference_listening import HeardReferences
@@ -191,9 +192,7 @@ class _Indexer:
         return ReferenceIndex(tuple(names), self._list_aliases())
 
     def _list_aliases(self) -> dict[Element, tuple[Element, ...]]:
-        joined: dict[Element, list[Element]] = defaultdict(list)
-        for element in self._joined:
-            joined[self._find_root(element)].append(element)
+        joined = group_pairs((self._find_root(element), element) for element in self._joined)
         aliases: dict[Element, tuple[Element, ...]] = {}
         for elements in joined.values():
             if len(elements) > 1:

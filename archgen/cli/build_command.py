@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 import click
 
 from archgen.cli import command_support, shared_options
+from archgen.frozen import replace
 
 if TYPE_CHECKING:
     from archgen.views.pages.report_outline import DetailLevel
@@ -59,7 +60,6 @@ def command(  # noqa: PLR0913 - one for each option
     trust: str | None,
 ) -> None:
     """Make report.docx, site/, diagrams/ and packed.yaml of PROJECT."""
-    from archgen.frozen import replace
     from archgen.products.full_build import build_outputs, choose_products
     from archgen.products.product_inputs import ProductInputs
 

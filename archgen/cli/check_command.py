@@ -12,14 +12,13 @@ from typing import TYPE_CHECKING, NoReturn
 import click
 
 from archgen.cli import asked_files, command_support, finding_documents, shared_options
-from archgen.diagnostics.diagnostic import Severity
+from archgen.diagnostics.diagnostic import Diagnostic, Severity
 from archgen.diagnostics.safe_text import make_visible
 from archgen.frozen import replace
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
 
-    from archgen.diagnostics.diagnostic import Diagnostic
     from archgen.pipeline import CheckedProject, VersionCache
     from archgen.products.check_findings import ReportedFindings
 

@@ -14,7 +14,12 @@ from typing import TYPE_CHECKING, NoReturn, TextIO, TypeVar
 import click
 
 from archgen.cli.shared_options import find_asked_variants
+from archgen.diagnostics.common_wording import join_first
 from archgen.diagnostics.diagnostic import Diagnostic, Severity, settle_diagnostics, sort_gravest_first
+from archgen.diagnostics.safe_text import make_visible
+from archgen.diagnostics.suggestions import did_you_mean
+from archgen.diagnostics.text_columns import find_width
+from archgen.products.output_options import OutputOptions
 
 if TYPE_CHECKING:
     from archgen.diagnostics.source_span import SourceTexts
@@ -25,7 +30,6 @@ if TYPE_CHECKING:
     from archgen.model.selector_evaluation import Selection
     from archgen.model.selector_parser import SelectorProblem
     from archgen.pipeline import CheckedProject, VersionCache
-    from archgen.products.output_options import OutputOptions
     from archgen.products.trusted_backends import TrustedRevision
     from archgen.views.changes.site_changes import SiteChanges
     from archgen.views.pages.report_outline import DetailLevel
@@ -82,7 +86,6 @@ def print_excerpts(
     findings: Sequence[Diagnostic], sources: SourceTexts, stream: TextIO, *, is_waiting: bool = False
 ) -> None:
     """Print findings with the lines of these sources. `is_waiting` is whether rules wait for errors to be mended."""
-    from archgen.diagnostics.text_columns import find_width
     from archgen.emit.terminal import findings_text
 
     colour = findings_text.wants_colour(stream, os.environ)
@@ -123,16 +126,12 @@ def make_drawing_options(
     checked_project: CheckedProject, selector_text: str | None, level: DetailLevel | None, revision: str | None = None
 ) -> OutputOptions:
     """Return what all outputs with pictures share: the selected part, and progress and warnings on this terminal."""
-    from archgen.products.output_options import OutputOptions
-
     selection = select_or_exit(checked_project, selector_text)
     return OutputOptions(selection, selector_text or "", level, revision, make_progress_printer(), print_warning)
 
 
 def report_selector_problems(problems: Iterable[SelectorProblem]) -> None:
     """Print what is odd about a selector; what is wrong is wrong usage."""
-    from archgen.diagnostics.safe_text import make_visible
-
     errors = []
     for problem in problems:
         text = f"{problem.message}; {problem.help}" if problem.help else problem.message
@@ -152,7 +151,6 @@ def exit_by_findings(checked_project: CheckedProject, *, strict: bool = False) -
 @contextmanager
 def explain_write_errors() -> Iterator[None]:
     """Turn what can go wrong while writing into one line for the user."""
-    from archgen.diagnostics.safe_text import make_visible
     from archgen.emit.file_tree import OutputError
 
     try:
@@ -167,8 +165,6 @@ def explain_write_errors() -> Iterator[None]:
 @contextmanager
 def explain_wrong_usage(*kinds: type[Exception]) -> Iterator[None]:
     """Turn errors of some kinds into wrong usage."""
-    from archgen.diagnostics.safe_text import make_visible
-
     try:
         yield
     except kinds as error:
@@ -178,7 +174,6 @@ def explain_wrong_usage(*kinds: type[Exception]) -> Iterator[None]:
 @contextmanager
 def explain_missing_versions() -> Iterator[None]:
     """Turn versions that cannot be found into wrong usage."""
-    from archgen.diagnostics.safe_text import make_visible
     from archgen.git import GitError, NoRepositoryError
     from archgen.project import ProjectNotFoundError
 
@@ -223,8 +218,6 @@ def summarise_counts(findings: Sequence[Diagnostic]) -> str:
 
 def print_warning(text: str) -> None:
     """Print a warning, such as what an output could not show as asked."""
-    from archgen.diagnostics.safe_text import make_visible
-
     click.echo(f"warning: {make_visible(text)}", err=True)
 
 
@@ -236,8 +229,6 @@ def choose_format(
     `formats` are the formats by their endings (`.docx`). Raise UsageError where another ending names none of them: a Word
     file that is called report.odt opens nowhere.
     """
-    from archgen.diagnostics.safe_text import make_visible
-
     ending = output.suffix.lower() if output is not None else ""
     if format_name or not ending:
         return format_name or default
@@ -261,8 +252,6 @@ def write_edit(root: Path, edit: FileEdit, detail: str) -> None:
 
 def print_diff(edit: FileEdit) -> None:
     """Print what an edit changes in a file, with control characters made visible."""
-    from archgen.diagnostics.safe_text import make_visible
-
     sys.stdout.writelines(f"{make_visible(line.rstrip())}\n" for line in edit.unified_diff())
 
 
@@ -282,7 +271,6 @@ def write_output(document: str | bytes, output: Path | None) -> None:
 
 def write_slice(path: Path, made_slice: RequirementSlice | MeasuredSlice, advice: str, detail: str | None = "") -> None:
     """Write a slice that was made of another file, and print that, unless `detail` is None. `advice` is for a refusal."""
-    from archgen.diagnostics.safe_text import make_visible
     from archgen.emit.file_tree import OutputError, write_file
 
     try:
@@ -355,8 +343,6 @@ def find_repository_folder(folder: Path, default: Path | None = None) -> Path:
 
 def split_words(words: Iterable[str], joint: str, what: str, example: str) -> dict[str, str]:
     """Return words such as `NAME=VALUE` by their names. Raise UsageError for one that is none, with an example."""
-    from archgen.diagnostics.safe_text import make_visible
-
     pairs = {}
     for word in words:
         name, found, value = word.partition(joint)
@@ -369,9 +355,6 @@ def split_words(words: Iterable[str], joint: str, what: str, example: str) -> di
 
 def require_host(architecture: Architecture, host: str) -> None:
     """Raise UsageError where a project has no host of this id."""
-    from archgen.diagnostics.safe_text import make_visible
-    from archgen.diagnostics.suggestions import did_you_mean
-
     if host not in architecture.hosts:
         known = f"the hosts are {', '.join(architecture.hosts)}" if architecture.hosts else "the project has no hosts"
         raise click.UsageError(
@@ -381,10 +364,6 @@ def require_host(architecture: Architecture, host: str) -> None:
 
 def require_partner(architecture: Architecture, name: str) -> Partner:
     """Return a partner by his id. Raise UsageError where a project has none of this id."""
-    from archgen.diagnostics.common_wording import join_first
-    from archgen.diagnostics.safe_text import make_visible
-    from archgen.diagnostics.suggestions import did_you_mean
-
     partners = architecture.partners
     if name not in partners:
         known = f"the partners are {join_first(list(partners), 8)}" if partners else "the project has no partners"

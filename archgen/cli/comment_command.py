@@ -7,6 +7,8 @@ from pathlib import Path
 
 import click
 
+from archgen.diagnostics.safe_text import make_visible
+
 
 @click.command("comment")
 @click.argument("file", type=click.Path(exists=True, dir_okay=False, path_type=Path))
@@ -18,7 +20,6 @@ def command(file: Path, key: str) -> None:
     It runs in a job of GitHub Actions (GITHUB_TOKEN, permission pull-requests: write) or GitLab CI (ARCHGEN_TOKEN). A token
     that may not write, as in a pull request from a fork, is no failure: the text goes to the job's summary instead.
     """
-    from archgen.diagnostics.safe_text import make_visible
     from archgen.forge import ForgeError, post_comment
 
     try:
@@ -43,7 +44,6 @@ def command(file: Path, key: str) -> None:
 
 def _post_on_requests(text: str, key: str) -> None:
     """Put each text on its request. One that cannot be put there fails at the end, after all others."""
-    from archgen.diagnostics.safe_text import make_visible
     from archgen.forge import ForgeError
     from archgen.forge.request_comments import post_request_comments, read_request_comments
 

@@ -4,13 +4,21 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 import click
 
-if TYPE_CHECKING:
-    from archgen.pipeline import CheckedProject
-    from archgen.syntax.yaml_tree import MappingEntry
+from archgen import pipeline, project
+from archgen.compose import list_type_entries
+from archgen.compose.type_expressions import TypeExpression
+from archgen.compose.type_table import TypeTable, list_generic_names
+from archgen.diagnostics.suggestions import did_you_mean
+from archgen.link import library_merging, mapping_values, slice_merging
+from archgen.pipeline import CheckedProject
+from archgen.project.library_reading import SHIPPED_ID, SHIPPED_PATH, choose_distro, load_shipped_component_types
+from archgen.project.project_loading import load_from_files
+from archgen.project.project_search import PROJECT_FILE, ProjectNotFoundError, find_project
+from archgen.syntax.project_files import OverlaidFiles
+from archgen.syntax.yaml_tree import MappingEntry, MappingNode
 
 SHIPPED_LIBRARY = "builtin"
 """What `--library` calls the types that ship, whether the project has them as a library or not."""
@@ -19,11 +27,6 @@ _COLUMNS = ("type", "title", "functionality", "inputs", "outputs", "package")
 
 def check_no_project(project: Path | None) -> CheckedProject | None:
     """Return an empty project where none is named and none is around the current folder; None where there is one."""
-    from archgen import pipeline
-    from archgen.project.project_loading import load_from_files
-    from archgen.project.project_search import PROJECT_FILE, ProjectNotFoundError, find_project
-    from archgen.syntax.project_files import OverlaidFiles
-
     try:
         find_project(project)
     except ProjectNotFoundError:
@@ -41,8 +44,6 @@ def list_component_types(
 
     Raises `click.UsageError` for a library that the project has not.
     """
-    from archgen.compose import list_type_entries
-
     entries = list_type_entries(checked_project.merged_table)
     libraries = {each.id: each.is_shipped for each in checked_project.loaded_project.libraries}
     library = asked_library
@@ -62,10 +63,6 @@ def list_component_types(
 
 def list_type_names(project_path: Path | None) -> tuple[str, ...]:
     """Return the names of the component types that a project may name; none where there is no project."""
-    from archgen import project
-    from archgen.compose import list_type_entries
-    from archgen.link import library_merging, slice_merging
-
     try:
         loaded_project = project.load_project(project_path)
     except project.ProjectNotFoundError:
@@ -77,8 +74,6 @@ def list_type_names(project_path: Path | None) -> tuple[str, ...]:
 
 def _list_shipped_entries(checked_project: CheckedProject) -> dict[str, MappingEntry]:
     """Return what ships for the project's distribution, as one calls it that writes `libraries: {ros: builtin}`."""
-    from archgen.project.library_reading import SHIPPED_ID, SHIPPED_PATH, choose_distro, load_shipped_component_types
-
     types = load_shipped_component_types(choose_distro(checked_project.loaded_project.distro))
     hint = f"With `libraries: {{{SHIPPED_ID}: {SHIPPED_PATH}}}` in archgen.yaml the project may name these."
     click.echo(hint, err=True)
@@ -87,8 +82,6 @@ def _list_shipped_entries(checked_project: CheckedProject) -> dict[str, MappingE
 
 def _require_library(library: str, library_ids: set[str]) -> None:
     if library not in library_ids:
-        from archgen.diagnostics.suggestions import did_you_mean
-
         names = (*sorted(library_ids), SHIPPED_LIBRARY)
         guess = did_you_mean(library, names) or f"there are {', '.join(f'`{name}`' for name in names)}"
         msg = f"the project has no library `{library}`; {guess}"
@@ -96,11 +89,6 @@ def _require_library(library: str, library_ids: set[str]) -> None:
 
 
 def _list_rows(entries: Mapping[str, MappingEntry]) -> Iterator[tuple[str, ...]]:
-    from archgen.compose.type_expressions import TypeExpression
-    from archgen.compose.type_table import TypeTable, list_generic_names
-    from archgen.link import mapping_values
-    from archgen.syntax.yaml_tree import MappingNode
-
     table = TypeTable(entries, [])
     for name, entry in entries.items():
         body = table.get_body(TypeExpression(name, list_generic_names(entry))) or MappingNode({}, entry.key_span)

@@ -13,6 +13,7 @@ from archgen.cli import command_support, finding_documents, shared_options
 from archgen.diagnostics.common_wording import fit_lines, join_first
 from archgen.diagnostics.diagnostic import Severity
 from archgen.diagnostics.safe_text import make_visible
+from archgen.diagnostics.suggestions import did_you_mean
 from archgen.frozen import replace
 
 if TYPE_CHECKING:
@@ -222,7 +223,6 @@ def _adopt_remedies(
 
 def _refuse_unknown_rules(names: Sequence[str]) -> None:
     from archgen.conformance.conformance_rules import RULE_NAMES
-    from archgen.diagnostics.suggestions import did_you_mean
 
     for name in names:
         if name not in RULE_NAMES:

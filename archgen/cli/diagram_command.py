@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 import click
 
 from archgen.cli import command_support, shared_options
+from archgen.frozen import replace
 
 if TYPE_CHECKING:
     from archgen.views.pages.report_outline import DetailLevel
@@ -59,7 +60,6 @@ def command(  # noqa: PLR0913 - one for each option
 
     With --select the overview shows just what is selected, neighbours grey, and only its pictures are drawn.
     """
-    from archgen.frozen import replace
     from archgen.products import project_outputs
 
     format_names = tuple(dict.fromkeys(form.strip() for form in forms.split(",") if form.strip()))

@@ -12,6 +12,8 @@ import click
 
 from archgen.cli import command_support, shared_options
 from archgen.diagnostics.diagnostic import sort_gravest_first
+from archgen.diagnostics.safe_text import make_visible
+from archgen.products.output_options import OutputOptions
 
 if TYPE_CHECKING:
     from archgen.compare import Comparison
@@ -97,7 +99,6 @@ def _write_comparison(
 ) -> str | bytes:
     from archgen.emit.terminal.findings_text import wants_colour
     from archgen.products import comparison_documents as documents
-    from archgen.products.output_options import OutputOptions
 
     if form == "github":
         return _write_github(comparison, new_version)
@@ -163,8 +164,6 @@ def _list_compared_projects(before: str | None, after: str | None, project: Path
 
 def _print_comparisons(comparisons: Sequence[ProjectComparison]) -> None:
     """Print a line for each project of a repository."""
-    from archgen.diagnostics.safe_text import make_visible
-
     width = max(len(each.folder) for each in comparisons)
     for each in comparisons:
         click.echo(make_visible(f"{each.folder:{width}}  {each.summary}"))

@@ -9,6 +9,8 @@ from typing import TYPE_CHECKING, Any, NoReturn
 import click
 
 from archgen.cli import command_support, shared_options
+from archgen.diagnostics.safe_text import make_visible
+from archgen.diagnostics.suggestions import did_you_mean
 
 if TYPE_CHECKING:
     from archgen.diagnostics.source_span import Span
@@ -45,7 +47,6 @@ def choose_title(element_id: str, title: str | None) -> str:
 
 def require_free_id(element_id: str, kind: str, elements: Mapping[str, Any]) -> None:
     """Raise UsageError where a text is not a valid id, or the id is taken."""
-    from archgen.diagnostics.safe_text import make_visible
     from archgen.model import element_ids
 
     if not element_ids.is_id(element_id):
@@ -59,9 +60,6 @@ def require_free_id(element_id: str, kind: str, elements: Mapping[str, Any]) -> 
 
 def find_group(checked_project: CheckedProject, group_id: str | None) -> str:
     """Return a group by its id, or the only one. Raise UsageError."""
-    from archgen.diagnostics.safe_text import make_visible
-    from archgen.diagnostics.suggestions import did_you_mean
-
     groups = checked_project.architecture.groups
     if group_id is None and len(groups) == 1:
         return next(iter(groups))
@@ -94,9 +92,6 @@ def find_place_of_component(checked_project: CheckedProject, name: str, group: s
 
 def _find_holder(checked_project: CheckedProject, holder_id: str | None) -> str:
     """Return the group, or the composed component, of this complete id. Raise UsageError."""
-    from archgen.diagnostics.safe_text import make_visible
-    from archgen.diagnostics.suggestions import did_you_mean
-
     if holder_id is None or "." not in holder_id:
         return find_group(checked_project, holder_id)
     architecture = checked_project.architecture
@@ -154,8 +149,6 @@ def add_element(  # noqa: PLR0913, PLR0917 - what is written, and where
 
 def raise_refusal(checked_project: CheckedProject, error: Any) -> NoReturn:  # noqa: ANN401 - imported where it is needed
     """Print why an edit is refused, and what to do, and end."""
-    from archgen.diagnostics.safe_text import make_visible
-
     if error.errors:
         command_support.print_findings(error.errors, checked_project, sys.stderr)
     by_hand = "".join(f"\n{make_visible(line)}" for line in error.by_hand.split("\n")) if error.by_hand else ""

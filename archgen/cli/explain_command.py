@@ -7,7 +7,9 @@ import sys
 
 import click
 
+from archgen.diagnostics.diagnostic import name_rule
 from archgen.diagnostics.suggestions import did_you_mean
+from archgen.diagnostics.text_columns import align_rows, find_width
 
 
 @click.command("explain")
@@ -31,8 +33,6 @@ def command(rule: str | None, distro: str | None, form: str) -> None:
         explain_sources(rule, distro)
         return
     from archgen import pipeline
-    from archgen.diagnostics.diagnostic import name_rule
-    from archgen.diagnostics.text_columns import align_rows, find_width
     from archgen.emit.terminal.findings_text import wants_colour
     from archgen.findings import rule_pages
     from archgen.findings.rule_table import COMPARISON_RULES, index_rules

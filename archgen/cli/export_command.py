@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 import click
 
 from archgen.cli import command_support, shared_options
+from archgen.products.output_options import OutputOptions
 
 if TYPE_CHECKING:
     from archgen.views.pages.report_outline import DetailLevel
@@ -48,7 +49,6 @@ def command(  # noqa: PLR0913 - one for each option
     NAME is a backend with `makes: file`; `archgen list --of backends` shows them.
     """
     from archgen.products import product_writing, project_outputs
-    from archgen.products.output_options import OutputOptions
 
     checked_project = command_support.check_before_writing(project, keep_going=keep_going)
     # The selector's word without a value: the component types of a project or a library, and nothing else.

@@ -9,6 +9,8 @@ from typing import TYPE_CHECKING
 import click
 
 from archgen.cli import command_support, shared_options
+from archgen.diagnostics.safe_text import make_visible
+from archgen.diagnostics.text_columns import align_rows, find_width
 
 if TYPE_CHECKING:
     from archgen.views.search.search_entry import SearchEntry
@@ -25,8 +27,6 @@ def command(words: tuple[str, ...], form: str, project: Path | None) -> None:
     All words must stand in it, as wholes or as parts, in any case of letters. What is called so comes first. The exit
     status is 1 where nothing is found. `archgen find pose base`
     """
-    from archgen.diagnostics.safe_text import make_visible
-    from archgen.diagnostics.text_columns import align_rows, find_width
     from archgen.views.lookup import make_lookup
     from archgen.views.search import make_search_entries
     from archgen.views.search.entry_ranking import rank_entries

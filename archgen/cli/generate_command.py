@@ -10,6 +10,8 @@ from typing import TYPE_CHECKING
 import click
 
 from archgen.cli import command_support, shared_options
+from archgen.diagnostics.safe_text import make_visible
+from archgen.products.output_options import OutputOptions
 
 if TYPE_CHECKING:
     from archgen.emit.workspace.workspace_plan import FileStep
@@ -86,7 +88,6 @@ def command(  # noqa: C901, PLR0913 - one for each option
     the project lists in `generate`. Files of others are never touched, and neither are those that somebody changed since
     archgen wrote them.
     """
-    from archgen.products.output_options import OutputOptions
     from archgen.products.workspace_product import WorkspaceRequest, write_workspace
 
     if name is None and (overwrite or keep or settings):
@@ -184,8 +185,6 @@ def _print_patch(result: WorkspaceResult) -> None:
 
 
 def _print_result(result: WorkspaceResult, backend: str, *, dry_run: bool, only_check: bool) -> None:
-    from archgen.diagnostics.safe_text import make_visible
-
     plan = result.plan
     if plan is None:
         click.echo(f"{backend}: nothing was written." if backend else "Nothing was written.", err=True)
@@ -227,8 +226,6 @@ def _print_conflicts(steps: Iterable[FileStep]) -> None:
 
 
 def _print_code_findings(step: FileStep) -> None:
-    from archgen.diagnostics.safe_text import make_visible
-
     for finding in step.findings:
         path = finding.path or step.path
         place = f"{path}:{finding.line}:{finding.column}" if finding.line else path

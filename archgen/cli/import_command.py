@@ -14,6 +14,7 @@ import click
 
 from archgen.cli import command_support, shared_options
 from archgen.diagnostics.safe_text import make_visible
+from archgen.diagnostics.suggestions import did_you_mean
 from archgen.importers.foreign_import import ForeignFileError
 from archgen.importers.import_formats import ImportFormat, guess_format, list_import_formats
 
@@ -162,8 +163,6 @@ def _split_words(words: Sequence[str]) -> tuple[ImportFormat, list[Path]]:
 
 
 def _refuse_format(word: str, known_formats: Iterable[str]) -> None:
-    from archgen.diagnostics.suggestions import did_you_mean
-
     guess = did_you_mean(word, known_formats)
     msg = f"there is no file and no format `{word}`; {guess or 'formats are ' + ', '.join(known_formats)}"
     raise click.UsageError(make_visible(msg))

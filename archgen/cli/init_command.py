@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from archgen.cli import command_support
+from archgen.diagnostics.safe_text import make_visible
 from archgen.model.known_interfaces import KNOWN_DISTROS
 
 if TYPE_CHECKING:
@@ -148,7 +149,6 @@ def _has_project(target: Path) -> bool:
 
 def _set_up_merge_driver(target: Path) -> None:
     """Let git merge slices by what they say: say what was written and run, and what is left to do."""
-    from archgen.diagnostics.safe_text import make_visible
     from archgen.git import GitError, NoRepositoryError
     from archgen.start import merge_driver_setup
 
@@ -177,7 +177,6 @@ def _set_up_merge_driver(target: Path) -> None:
 
 def _set_up_merge_hook(target: Path) -> None:
     """Let git check the project after each merge, and say what there is."""
-    from archgen.diagnostics.safe_text import make_visible
     from archgen.git import GitError
     from archgen.start.merge_driver_setup import install_merge_hook
 

@@ -8,8 +8,9 @@ from typing import TYPE_CHECKING, NoReturn
 
 import click
 
-from archgen.cli import command_support, measured_recordings, shared_options
+from archgen.cli import command_support, shared_options
 from archgen.diagnostics.safe_text import make_visible
+from archgen.products.output_options import OutputOptions
 
 if TYPE_CHECKING:
     from archgen.pipeline import CheckedProject
@@ -76,8 +77,8 @@ def command(  # noqa: PLR0913 - one for each option
     Each topic, service and action with its version, its message, what is promised and what is only expected of it, chains,
     requirements, open points, and who serves and who reads it. `archgen interfaces --between certh sssa -o certh-sssa.docx`
     """
+    from archgen.cli import measured_recordings
     from archgen.products import agreement_documents, product_writing
-    from archgen.products.output_options import OutputOptions
 
     if since and signed:
         msg = "--signed marks what changed as --since does: give one of them"

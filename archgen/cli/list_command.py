@@ -13,6 +13,7 @@ from archgen.cli import command_support, shared_options
 from archgen.diagnostics.diagnostic import Severity
 from archgen.diagnostics.text_columns import find_width
 from archgen.language.language_tables import SECTION_KINDS
+from archgen.products.output_options import OutputOptions
 
 if TYPE_CHECKING:
     from archgen.pipeline import CheckedProject
@@ -96,7 +97,6 @@ def _list_elements(
 ) -> tuple[Sequence[str], Sequence[Sequence[str]]]:
     """Return the columns and rows of elements."""
     from archgen.products import project_views
-    from archgen.products.output_options import OutputOptions
 
     # Who writes the kind where a selector stands means `--of`, unless an element is called so.
     meant_kind = next((each for each in LISTABLE_KINDS if selector_text in {each, each.removesuffix("s")}), None)

@@ -14,6 +14,8 @@ from typing import TYPE_CHECKING
 import click
 
 from archgen.cli import shared_options, verb_module
+from archgen.diagnostics.diagnostic import Severity
+from archgen.diagnostics.safe_text import format_json
 
 if TYPE_CHECKING:
     from mcp.server.mcpserver import MCPServer
@@ -96,7 +98,6 @@ class ProjectTools:
         to stand there}; an empty "old" makes a new file. The answer has its number, the patch, and the findings that it brings and takes away.
         """
         from archgen import pipeline
-        from archgen.diagnostics.safe_text import format_json
         from archgen.edit.element_edit import EditRefusedError
         from archgen.edit.proposed_edit import TextChange, judge_proposal
         from archgen.emit.data.findings_data import findings_to_json
@@ -125,8 +126,6 @@ class ProjectTools:
 
     def apply(self, proposal: int) -> str:
         """Write what was proposed under a number, if the files are as they were then and it brings no error; `archgen undo` takes it back."""
-        from archgen.diagnostics.diagnostic import Severity
-        from archgen.diagnostics.safe_text import format_json
         from archgen.edit.element_edit import EditRefusedError
         from archgen.emit.file_tree import OutputError
         from archgen.products.written_edits import write_edits

@@ -5,23 +5,24 @@ from __future__ import annotations
 import sys
 from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import click
 
-from archgen.cli import command_support
+from archgen.cli import command_support, shared_options
 from archgen.diagnostics.safe_text import format_json, make_visible
 from archgen.diagnostics.text_columns import find_width, wrap_line
-
-if TYPE_CHECKING:
-    from archgen.edit.measured_slice import MeasuredSlice
-    from archgen.importers.foreign_import import ReadRecordings
-    from archgen.model.architecture import Architecture
-    from archgen.pipeline import CheckedProject
-    from archgen.timing.analysis import Analysis, ChainResult
-    from archgen.timing.chains.measured_comparison import MeasuredComparison, Observation
-
-DEFAULT_SLICE = "measured.yaml"
+from archgen.edit.measured_slice import MeasuredSlice, make_measured_slice
+from archgen.emit.terminal import measured_text
+from archgen.importers.foreign_import import ReadRecordings, RecordingRefusedError
+from archgen.installed_plugins import load_reader
+from archgen.model.architecture import Architecture
+from archgen.pipeline import CheckedProject
+from archgen.project import PROJECT_FILE
+from archgen.timing.analysis import Analysis, ChainResult
+from archgen.timing.chains.chain_bounds import bound_all_chains
+from archgen.timing.chains.measured_comparison import MeasuredComparison, Observation, compare_measured
+from archgen.timing.run_analysis import analyse_architecture
 
 
 def answer_recordings(
@@ -62,10 +63,6 @@ def _compare_recordings(
     checked_project: CheckedProject, architecture: Architecture, paths: Sequence[Path]
 ) -> tuple[ReadRecordings, tuple[MeasuredComparison, ...], bool]:
     """Read recordings and hold them against the design; print what is wrong with them, and return whether that is an error."""
-    from archgen.timing.chains.chain_bounds import bound_all_chains
-    from archgen.timing.chains.measured_comparison import compare_measured
-    from archgen.timing.run_analysis import analyse_architecture
-
     analysis = analyse_architecture(architecture)
     chains = bound_all_chains(analysis, architecture)
     recordings = _read_recordings(paths, architecture, analysis, chains)
@@ -82,9 +79,6 @@ def _compare_recordings(
 def _read_recordings(
     paths: Sequence[Path], architecture: Architecture, analysis: Analysis, chains: Mapping[str, ChainResult]
 ) -> ReadRecordings:
-    from archgen.importers.foreign_import import RecordingRefusedError
-    from archgen.installed_plugins import load_reader
-
     read_measured = load_reader("recordings")
     with command_support.explain_write_errors(), command_support.explain_wrong_usage(RecordingRefusedError):
         recordings: ReadRecordings = read_measured(paths, architecture, analysis, chains)
@@ -98,8 +92,6 @@ def _print_answer(
     *,
     as_json: bool,
 ) -> None:
-    from archgen.emit.terminal import measured_text
-
     if as_json:
         document = measured_text.measured_to_json(comparisons, recordings.observations, recordings.unmapped)
         adopted = {"adopted": _slice_to_json(measured_slice)} if measured_slice else {}
@@ -112,8 +104,6 @@ def _print_answer(
 
 
 def _refuse_target(checked_project: CheckedProject, slice_path: Path) -> None:
-    from archgen.project import PROJECT_FILE
-
     if checked_project.loaded_project.first_file != PROJECT_FILE:
         msg = "a project of a single file reads no slices: there is nothing that --adopt could write into"
         raise click.UsageError(msg)
@@ -129,8 +119,6 @@ def _refuse_errors(checked_project: CheckedProject, *, has_errors: bool) -> None
 
 
 def _make_slice(checked_project: CheckedProject, recordings: ReadRecordings, slice_path: Path) -> MeasuredSlice:
-    from archgen.edit.measured_slice import make_measured_slice
-
     measured_slice = make_measured_slice(
         checked_project, recordings.observations, _name_slice(checked_project.root, slice_path)
     )
@@ -143,7 +131,7 @@ def _make_slice(checked_project: CheckedProject, recordings: ReadRecordings, sli
 
 def _find_slice(root: Path, slice_path: Path) -> Path:
     """Return where the slice is to be written: the default lies in the project, others where they are named."""
-    return root / DEFAULT_SLICE if str(slice_path) == DEFAULT_SLICE else slice_path
+    return root / shared_options.MEASURED_SLICE if str(slice_path) == shared_options.MEASURED_SLICE else slice_path
 
 
 def _name_slice(root: Path, slice_path: Path) -> str:

@@ -8,6 +8,7 @@ from pathlib import Path
 import click
 
 from archgen.cli import command_support
+from archgen.diagnostics.safe_text import make_visible
 
 _FILE = click.Path(exists=True, dir_okay=False, path_type=Path)
 
@@ -24,7 +25,6 @@ def command(base: Path, ours: Path, theirs: Path, name: str, marker_size: int) -
     git calls it as a merge driver, with NAME as the path in the project; `archgen init --merge-driver` sets that up.
     Comments and order stay. Where both sides changed one thing, git's markers stand in the file, and the exit status is 1.
     """
-    from archgen.diagnostics.safe_text import make_visible
     from archgen.emit import file_tree
     from archgen.git import GitError
     from archgen.merge.file_merge import merge_contents

@@ -8,6 +8,8 @@ from pathlib import Path
 import click
 
 from archgen.cli import command_support, shared_options
+from archgen.diagnostics.safe_text import make_visible
+from archgen.products.output_options import OutputOptions
 from archgen.syntax.file_patterns import YAML_ENDINGS
 
 
@@ -27,9 +29,7 @@ def command(project: Path | None, output: Path | None, select: str | None, *, re
 
     With --resolved it is a record for other programs instead (`resolved.yaml`); --select then names a part of it.
     """
-    from archgen.diagnostics.safe_text import make_visible
     from archgen.products import product_writing, project_outputs
-    from archgen.products.output_options import OutputOptions
 
     if select and not resolved:
         msg = "--select goes with --resolved: a packed project is whole"

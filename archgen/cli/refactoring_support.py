@@ -12,6 +12,8 @@ import click
 
 from archgen.cli import command_support, element_adding, shared_options
 from archgen.cli.shared_options import CommandFunction
+from archgen.diagnostics.safe_text import make_visible
+from archgen.diagnostics.suggestions import did_you_mean
 
 if TYPE_CHECKING:
     from archgen.edit.refactoring.judged_version import JudgedVersion
@@ -31,7 +33,6 @@ def add_shared_options(function: CommandFunction) -> CommandFunction:
 
 def read_kind(text: str | None) -> str | None:
     """Return the kind that `--kind` names, None where it is not given. Raise UsageError for a word that is none."""
-    from archgen.diagnostics.suggestions import did_you_mean
     from archgen.schema.written_names import DECLARING_PARTS
 
     kinds = {kind.removesuffix("_declaration"): kind for kind in DECLARING_PARTS.values()}
@@ -50,7 +51,6 @@ def run_refactoring(
     dry_run: bool,
 ) -> None:
     """Plan, print and write a refactoring of the project at a path. One that is refused ends with the reason."""
-    from archgen.diagnostics.safe_text import make_visible
     from archgen.edit.element_edit import EditRefusedError
     from archgen.edit.refactoring.judged_version import judge_version
     from archgen.products.written_edits import write_edits

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 import click
 
 from archgen.cli import command_support, shared_options
+from archgen.frozen import replace
 
 if TYPE_CHECKING:
     from archgen.views.pages.report_outline import DetailLevel, ReportDocument
@@ -66,7 +67,6 @@ def command(  # noqa: PLR0913 - one for each option
     `--document data-sheets` writes a page for each component, `workbook` all lists as .xlsx (with the library XlsxWriter),
     `full` all of it in one document. `--format pdf` takes LibreOffice.
     """
-    from archgen.frozen import replace
     from archgen.products import project_outputs
 
     form = command_support.choose_format(form, output, _FORMAT_BY_ENDING, "xlsx" if document == "workbook" else "docx")

@@ -5,18 +5,16 @@ from __future__ import annotations
 import sys
 from collections.abc import Iterator
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 import click
 
 from archgen.cli import command_support
 from archgen.diagnostics.safe_text import make_visible
-
-if TYPE_CHECKING:
-    from archgen.edit.requirement_slice import RequirementSlice
-    from archgen.importers.foreign_import import ImportedRequirements
-    from archgen.importers.import_formats import ImportFormat
-    from archgen.pipeline import CheckedProject
+from archgen.edit.requirement_slice import RequirementSlice, make_requirement_slice
+from archgen.importers.foreign_import import ForeignFileError, ImportedRequirements
+from archgen.importers.import_formats import ImportFormat
+from archgen.pipeline import CheckedProject
+from archgen.project import PROJECT_FILE
 
 DEFAULT_SLICE = "requirements.yaml"
 
@@ -45,16 +43,12 @@ def import_requirements(
 
 
 def _refuse_single_file(checked_project: CheckedProject) -> None:
-    from archgen.project import PROJECT_FILE
-
     if checked_project.loaded_project.first_file != PROJECT_FILE:
         msg = "a project of a single file reads no slices: put it into a folder as archgen.yaml first"
         raise click.UsageError(msg)
 
 
 def _read_file(import_format: ImportFormat, file: Path, checked_project: CheckedProject) -> ImportedRequirements:
-    from archgen.importers.foreign_import import ForeignFileError
-
     try:
         imported: ImportedRequirements = import_format.load_reader()(
             file, checked_project.architecture.requirements.values()
@@ -89,8 +83,6 @@ def _summarise_objects(file: Path, imported: ImportedRequirements) -> Iterator[s
 
 
 def _make_slice(checked_project: CheckedProject, imported: ImportedRequirements, into: Path | None) -> RequirementSlice:
-    from archgen.edit.requirement_slice import make_requirement_slice
-
     target = _find_target(checked_project, into)
     root = checked_project.root.resolve()
     if not target.is_relative_to(root):

@@ -16,6 +16,7 @@ from archgen.cli import command_support, finding_documents, shared_options
 from archgen.diagnostics.diagnostic import Severity, sort_gravest_first
 from archgen.diagnostics.safe_text import make_visible
 from archgen.frozen import replace
+from archgen.products.output_options import OutputOptions
 
 if TYPE_CHECKING:
     from archgen.pipeline import CheckedProject, VersionCache
@@ -216,7 +217,6 @@ def _write_comparison(change: ReviewedChange, target: Path) -> None:
     """Write what changed, for people, programs and the job's summary."""
     from archgen.emit.markdown.comparison_markdown import add_code_differences
     from archgen.products import comparison_documents
-    from archgen.products.output_options import OutputOptions
 
     compared = (change.comparison, change.old_version, change.new_version)
     comment = comparison_documents.render_comparison_markdown(*compared, change.command)
@@ -241,7 +241,6 @@ def _build_outputs(
 ) -> None:
     """Build the outputs of what is sound; they do not decide the status."""
     from archgen.products import full_build
-    from archgen.products.output_options import OutputOptions
     from archgen.products.product_inputs import ProductInputs
 
     output_options = OutputOptions(

@@ -11,6 +11,7 @@ import click
 
 from archgen.cli import command_support, shared_options
 from archgen.diagnostics.diagnostic import Severity
+from archgen.products.output_options import OutputOptions
 
 if TYPE_CHECKING:
     from archgen.serve.live_site import LiveSite
@@ -56,7 +57,6 @@ def command(  # noqa: PLR0913 - one for each option
     Nothing is written. Errors stand on the page until they are mended. Only this machine can see it unless --host says
     otherwise. Ctrl-C ends it.
     """
-    from archgen.products.output_options import OutputOptions
     from archgen.project import ProjectNotFoundError
     from archgen.serve.live_site import LiveSite
 

@@ -51,6 +51,8 @@ select_option = click.option(
     metavar="WORDS",
     help="Show only what a selector names, neighbours grey: `owner:certh`, `sensing+`, `a..b`, `tag:safety -x`.",
 )
+MEASURED_SLICE = "measured.yaml"
+"""The file that `timing --adopt` writes by default."""
 VARIANT_KEY = "archgen.variants"
 """Where the variants that a verb is asked for stand in click's context."""
 

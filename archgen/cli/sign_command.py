@@ -7,6 +7,8 @@ from pathlib import Path
 import click
 
 from archgen.cli import command_support, shared_options
+from archgen.diagnostics.safe_text import make_visible
+from archgen.products.output_options import OutputOptions
 
 
 @click.command("sign")
@@ -46,10 +48,8 @@ def command(  # noqa: PLR0913 - one for each option
     """
     from datetime import datetime
 
-    from archgen.diagnostics.safe_text import make_visible
     from archgen.git import GitError
     from archgen.products import agreement_documents, agreement_signing, product_writing
-    from archgen.products.output_options import OutputOptions
 
     form = command_support.choose_format(None, output, agreement_documents.FORMAT_BY_ENDING, "docx")
     checked_project = command_support.check_before_writing(project, keep_going=False)

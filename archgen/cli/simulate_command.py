@@ -11,8 +11,10 @@ from typing import TYPE_CHECKING
 import click
 
 from archgen.cli import command_support, shared_options
+from archgen.diagnostics.common_wording import join_first
 from archgen.diagnostics.diagnostic import Severity
 from archgen.diagnostics.safe_text import make_visible
+from archgen.diagnostics.suggestions import did_you_mean
 from archgen.diagnostics.text_columns import find_width, wrap_line
 
 if TYPE_CHECKING:
@@ -137,9 +139,6 @@ def _describe_flood(time: Fraction) -> str:
 
 
 def _require_chains(asked_ids: tuple[str, ...], chain_ids: tuple[str, ...]) -> None:
-    from archgen.diagnostics.common_wording import join_first
-    from archgen.diagnostics.suggestions import did_you_mean
-
     for name in asked_ids:
         if name not in chain_ids:
             guess = did_you_mean(name, chain_ids)

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 import click
 
 from archgen.cli import command_support, shared_options
+from archgen.frozen import replace
 
 if TYPE_CHECKING:
     from archgen.views.pages.report_outline import DetailLevel
@@ -41,7 +42,6 @@ def command(  # noqa: PLR0913 - one for each option
     keep_going: bool,
 ) -> None:
     """Write the architecture of PROJECT as a web site that opens from the disk."""
-    from archgen.frozen import replace
     from archgen.products import project_outputs
 
     checked_project = command_support.check_before_writing(project, keep_going=keep_going)

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 import click
 
 from archgen.cli import command_support, shared_options
+from archgen.frozen import replace
 
 if TYPE_CHECKING:
     from archgen.views.pages.report_outline import DetailLevel
@@ -41,7 +42,6 @@ def command(  # noqa: PLR0913 - one for each option
 
     Tables and text are native, so that people can edit them.
     """
-    from archgen.frozen import replace
     from archgen.products import project_outputs
 
     command_support.choose_format(None, output, {".pptx": "pptx"}, "pptx")

@@ -7,18 +7,7 @@ from typing import TYPE_CHECKING
 
 import click
 
-from archgen.cli import command_support, measured_recordings, shared_options
-from archgen.cli.timing_printing import (
-    TimingRequest,
-    print_budget,
-    print_chain,
-    print_paths,
-    print_proposal,
-    print_reasons,
-    print_sensitivity,
-    print_timing_summary,
-    raise_usage_error,
-)
+from archgen.cli import command_support, shared_options
 from archgen.diagnostics.diagnostic import Severity
 
 if TYPE_CHECKING:
@@ -80,7 +69,7 @@ ANY_PROPOSAL = "any"
     "--adopt",
     metavar="[FILE]",
     is_flag=False,
-    flag_value=measured_recordings.DEFAULT_SLICE,
+    flag_value=shared_options.MEASURED_SLICE,
     type=click.Path(path_type=Path),
     help="With --measured: write the longest and shortest execution times into a slice, wherever no other file has one.  "
     "[default: measured.yaml in the project]",
@@ -122,28 +111,32 @@ def command(  # noqa: PLR0913, PLR0917 - one for each option
     _refuse_writing(written, recordings, adopt, propose, applies=applies)
     checked_project = command_support.check_or_exit(project)
 
+    from archgen.cli import timing_printing
+
     command_support.print_findings_above(checked_project, lowest_severity=Severity.ERROR)
-    request = TimingRequest(
+    request = timing_printing.TimingRequest(
         checked_project, _apply_overrides(checked_project.architecture, written), form == "json", written, shows_all
     )
     if chain is not None:
-        print_chain(request, chain)
+        timing_printing.print_chain(request, chain)
     elif why is not None:
-        print_reasons(request, why)
+        timing_printing.print_reasons(request, why)
     elif source is not None and target is not None:
-        print_paths(request, source, target, most)
+        timing_printing.print_paths(request, source, target, most)
     elif sensitivity is not None:
-        print_sensitivity(request, sensitivity)
+        timing_printing.print_sensitivity(request, sensitivity)
     elif budget is not None:
-        print_budget(request, budget)
+        timing_printing.print_budget(request, budget)
     elif propose is not None:
-        print_proposal(request, keep_triggers=propose != ANY_PROPOSAL, applies=applies)
+        timing_printing.print_proposal(request, keep_triggers=propose != ANY_PROPOSAL, applies=applies)
     elif recordings:
+        from archgen.cli import measured_recordings
+
         measured_recordings.answer_recordings(
             checked_project, request.architecture, recordings, adopt, as_json=request.as_json
         )
     else:
-        print_timing_summary(request)
+        timing_printing.print_timing_summary(request)
     command_support.exit_by_findings(checked_project)
 
 
@@ -162,7 +155,5 @@ def _apply_overrides(architecture: Architecture, overrides: tuple[str, ...]) -> 
     from archgen.link.process_overrides import OverrideError
     from archgen.link.timing_overrides import apply_overrides
 
-    try:
+    with command_support.explain_wrong_usage(OverrideError):
         return apply_overrides(architecture, overrides) if overrides else architecture
-    except OverrideError as error:
-        raise_usage_error(str(error))

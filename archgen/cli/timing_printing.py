@@ -5,22 +5,35 @@ from __future__ import annotations
 import os
 import sys
 from collections.abc import Iterable
-from typing import TYPE_CHECKING, NoReturn
+from typing import NoReturn
 
 import click
 
 from archgen.cli import command_support
 from archgen.cli.shared_options import find_asked_variants
+from archgen.diagnostics.common_wording import join_first
 from archgen.diagnostics.safe_text import format_json, make_visible
+from archgen.diagnostics.suggestions import did_you_mean
 from archgen.diagnostics.text_columns import find_width, wrap_line
+from archgen.emit.data import timing_json
+from archgen.emit.terminal import chain_remedies, chain_text, timing_answers, timing_text
+from archgen.emit.terminal.findings_text import wants_colour
+from archgen.emit.terminal.state_paint import paint_states
 from archgen.frozen import dataclass
-
-if TYPE_CHECKING:
-    from archgen.edit.element_edit import FileEdit
-    from archgen.model.architecture import Architecture
-    from archgen.pipeline import CheckedProject
-    from archgen.timing.analysis import Analysis, ChainResult
-    from archgen.timing.search.proposals import Proposal
+from archgen.link.timing_overrides import apply_overrides
+from archgen.model.architecture import Architecture
+from archgen.pipeline import CheckedProject
+from archgen.simulation.chain_witnesses import judge_chains
+from archgen.timing.analysis import Analysis, ChainResult
+from archgen.timing.chains import chain_bounds, duerr_bounds, word_resolution
+from archgen.timing.chains.chain_sensitivity import find_sensitivity
+from archgen.timing.chains.cost_network import CostNetwork
+from archgen.timing.chains.figure_explanations import explain_word
+from archgen.timing.chains.loop_rounds import find_loop_rounds
+from archgen.timing.chains.missing_figures import describe_gaps
+from archgen.timing.run_analysis import analyse_architecture, analyse_for_chains
+from archgen.timing.search import chain_budgets, proposals
+from archgen.timing.search.change_trials import ChangeTrials
 
 
 @dataclass(frozen=True, slots=True)
@@ -38,15 +51,10 @@ class TimingRequest:
 
 def print_timing_summary(request: TimingRequest) -> None:
     """Print all of the timing: chains, hosts, links and what is missing; with `--set` before and after."""
-    from archgen.emit.data import timing_json
-    from archgen.emit.terminal import timing_answers, timing_text
-    from archgen.timing.chains.cost_network import CostNetwork
-    from archgen.timing.chains.loop_rounds import find_loop_rounds
-
     present = _analyse_chains(request.checked_project.architecture)
     if not request.overrides:
         analysis, chains = present
-        proposal = _find_short_proposal(request.architecture, analysis, chains)
+        proposal = proposals.find_short_proposal(request.architecture, analysis, chains, apply_overrides)
         if request.as_json:
             _print_json(timing_json.timing_to_json(analysis, chains, proposal))
         else:
@@ -65,31 +73,23 @@ def print_timing_summary(request: TimingRequest) -> None:
 
 def print_chain(request: TimingRequest, chain_id: str) -> None:
     """Print one chain term by term (`--chain`)."""
-    from archgen.emit.data import timing_json
-    from archgen.emit.terminal import chain_text
-    from archgen.timing.chains import chain_bounds as chains_of
-    from archgen.timing.chains import duerr_bounds
-    from archgen.timing.chains.cost_network import CostNetwork
-
     analysis, chains = _analyse_chains(request.architecture)
     result = _find_chain(chains, chain_id)
     is_late = result.verdict in {"missed", "not proven"} and not request.overrides
-    proposal = _find_short_proposal(request.architecture, analysis, chains) if is_late else None
+    proposal = (
+        proposals.find_short_proposal(request.architecture, analysis, chains, apply_overrides) if is_late else None
+    )
     # Without terms the chain is open: its elements may be components that no activity stands for.
     published = duerr_bounds.bound_periodic_chain(analysis, result.through) if result.terms else None
     if request.as_json:
         _print_json({"version": timing_json.VERSION, "chain": chain_id, **timing_json.chain_to_json(result, proposal)})
     else:
-        age = chains_of.find_data_age(CostNetwork.of_analysis(analysis), result)
+        age = chain_bounds.find_data_age(CostNetwork.of_analysis(analysis), result)
         _print_lines(chain_text.format_chain(result, analysis, age, published, find_width(sys.stdout), proposal))
 
 
 def print_reasons(request: TimingRequest, word: str) -> None:
     """Print why a figure is what it is (`--why`)."""
-    from archgen.emit.terminal import timing_answers
-    from archgen.timing.chains import word_resolution
-    from archgen.timing.chains.figure_explanations import explain_word
-
     analysis, chains = _analyse_chains(request.architecture)
     names = [word]
     # Chains, hosts and links explain themselves; a node or component stands for its activities.
@@ -107,12 +107,6 @@ def print_reasons(request: TimingRequest, word: str) -> None:
 
 def print_paths(request: TimingRequest, source: str, target: str, path_count: int) -> None:
     """Print the ways between two elements (`--from`, `--to`)."""
-    from archgen.emit.data import timing_json
-    from archgen.emit.terminal import chain_text
-    from archgen.timing.chains import chain_bounds, word_resolution
-    from archgen.timing.chains.cost_network import CostNetwork
-    from archgen.timing.run_analysis import analyse_architecture
-
     analysis = analyse_architecture(request.architecture)
     network = CostNetwork.of_analysis(analysis)
     try:
@@ -135,10 +129,6 @@ def print_paths(request: TimingRequest, source: str, target: str, path_count: in
 
 def print_sensitivity(request: TimingRequest, chain_id: str) -> None:
     """Print what decides a chain, the most decisive first (`--sensitivity`)."""
-    from archgen.emit.terminal import timing_answers
-    from archgen.timing.chains.chain_sensitivity import find_sensitivity
-    from archgen.timing.run_analysis import analyse_for_chains
-
     analysis, chains = _analyse_chains(request.architecture)
     result = _find_chain(chains, chain_id)
     ranking = find_sensitivity(request.architecture, request.architecture.chains[chain_id], analyse_for_chains, chains)
@@ -150,18 +140,14 @@ def print_sensitivity(request: TimingRequest, chain_id: str) -> None:
 
 def print_budget(request: TimingRequest, chain_id: str) -> None:
     """Print how long what a chain rests on may take until it misses its deadline (`--budget`)."""
-    from archgen.emit.terminal import chain_text
-    from archgen.link.timing_overrides import apply_overrides
-    from archgen.timing.chains.missing_figures import describe_gaps
-    from archgen.timing.search.chain_budgets import MAX_TRIES, UnknownBudgetError, find_chain_budget
-    from archgen.timing.search.change_trials import ChangeTrials
-
     architecture = request.architecture
     analysis, chains = _analyse_chains(architecture)
     result = _find_chain(chains, chain_id)
     try:
-        budget = find_chain_budget(ChangeTrials(architecture, analysis, apply_overrides, MAX_TRIES), result)
-    except UnknownBudgetError as error:
+        budget = chain_budgets.find_chain_budget(
+            ChangeTrials(architecture, analysis, apply_overrides, chain_budgets.MAX_TRIES), result
+        )
+    except chain_budgets.UnknownBudgetError as error:
         gaps_text = describe_gaps(result, analysis) if result.deadline else ""
         raise_usage_error(
             f"`{chain_id}` has no budget: {error}{f' ({gaps_text})' if gaps_text else ''}"
@@ -177,16 +163,12 @@ def print_budget(request: TimingRequest, chain_id: str) -> None:
 def print_proposal(request: TimingRequest, *, keep_triggers: bool, applies: bool) -> None:
     """Print a configuration in which chains are less late (`--propose`), with its patch; or write it (`--apply`)."""
     from archgen.edit.configuration_patch import plan_patch
-    from archgen.edit.element_edit import EditRefusedError
-    from archgen.emit.terminal import chain_remedies
-    from archgen.link.timing_overrides import apply_overrides
-    from archgen.timing.search.change_trials import ChangeTrials
-    from archgen.timing.search.proposals import MAX_TRIES, find_proposal
+    from archgen.edit.element_edit import EditRefusedError, FileEdit
 
     architecture = request.architecture
     analysis, chains = _analyse_chains(architecture)
-    trials = ChangeTrials(architecture, analysis, apply_overrides, MAX_TRIES)
-    proposal = find_proposal(trials, chains, keep_triggers=keep_triggers)
+    trials = ChangeTrials(architecture, analysis, apply_overrides, proposals.MAX_TRIES)
+    proposal = proposals.find_proposal(trials, chains, keep_triggers=keep_triggers)
     edits: tuple[FileEdit, ...] = ()
     refusal: str | None = None
     try:
@@ -214,27 +196,12 @@ def print_proposal(request: TimingRequest, *, keep_triggers: bool, applies: bool
         click.echo("\n".join(shown_lines), nl=False)
 
 
-def _find_short_proposal(
-    architecture: Architecture, analysis: Analysis, chains: dict[str, ChainResult]
-) -> Proposal | None:
-    from archgen.link.timing_overrides import apply_overrides
-    from archgen.timing.search.proposals import find_short_proposal
-
-    return find_short_proposal(architecture, analysis, chains, apply_overrides)
-
-
 def _analyse_chains(architecture: Architecture) -> tuple[Analysis, dict[str, ChainResult]]:
-    from archgen.simulation.chain_witnesses import judge_chains
-    from archgen.timing.run_analysis import analyse_architecture
-
     analysis = analyse_architecture(architecture)
     return analysis, judge_chains(analysis, architecture)
 
 
 def _find_chain(chain_results: dict[str, ChainResult], chain_id: str) -> ChainResult:
-    from archgen.diagnostics.common_wording import join_first
-    from archgen.diagnostics.suggestions import did_you_mean
-
     if chain_id not in chain_results:
         existing = (
             f"there are: {join_first(tuple(chain_results), 12)}"
@@ -255,9 +222,6 @@ def _print_json(document: object) -> None:
 
 
 def _print_lines(lines: Iterable[str]) -> None:
-    from archgen.emit.terminal.findings_text import wants_colour
-    from archgen.emit.terminal.state_paint import paint_states
-
     width = find_width(sys.stdout)
     wrapped = (part for line in lines for part in wrap_line(make_visible(line), width))
     for line in paint_states(wrapped) if wants_colour(sys.stdout, os.environ) else wrapped:

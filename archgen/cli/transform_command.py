@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 import click
 
 from archgen.cli import command_support, shared_options
+from archgen.diagnostics.safe_text import make_visible
 from archgen.syntax.file_patterns import YAML_ENDINGS
 
 if TYPE_CHECKING:
@@ -104,7 +105,6 @@ def _transform_or_exit(
 
 def _print_passes(project: Path | None) -> None:
     """Print every pass with what it does, needs and leaves true."""
-    from archgen.diagnostics.safe_text import make_visible
     from archgen.passes.pass_shape import STATES
     from archgen.passes.patterns.pattern_registry import find_known_passes
     from archgen.project import ProjectNotFoundError, load_project

@@ -19,6 +19,7 @@ from archgen.compare.matched_ids import MatchedIds
 from archgen.compare.timing_pair import TimingPair
 from archgen.compare.version_pair import VersionPair
 from archgen.frozen import dataclass, replace
+from archgen.grouping import group_pairs
 from archgen.model.node import Qos
 from archgen.model.partner_interfaces import PartnerPair, find_all_interfaces
 from archgen.timing.figures.timing_values import TimingValue
@@ -314,8 +315,4 @@ def _follow_takers(changes: Iterable[BoundaryChange]) -> Iterator[BoundaryChange
 def _group_by_giver(
     changes: Iterable[BoundaryChange], kind: str
 ) -> Mapping[tuple[str, tuple[str, ...]], list[BoundaryChange]]:
-    groups: dict[tuple[str, tuple[str, ...]], list[BoundaryChange]] = {}
-    for change in changes:
-        if change.kind == kind:
-            groups.setdefault((change.interface_id, change.givers), []).append(change)
-    return groups
+    return group_pairs(((change.interface_id, change.givers), change) for change in changes if change.kind == kind)

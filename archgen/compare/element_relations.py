@@ -7,6 +7,7 @@ from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
 from functools import cached_property
 
+from archgen.grouping import group_pairs
 from archgen.model.architecture import Architecture
 from archgen.model.component import Component, Group, list_component_ports
 
@@ -41,17 +42,17 @@ class ElementRelations:
     @cached_property
     def readers_by_output(self) -> Mapping[str, list[str]]:
         """Return for each output the inputs that read it."""
-        return _collect_by_first((edge.output, edge.input) for edge in self.architecture.edges)
+        return group_pairs((edge.output, edge.input) for edge in self.architecture.edges)
 
     @cached_property
     def outputs_by_input(self) -> Mapping[str, list[str]]:
         """Return for each input the outputs that it reads."""
-        return _collect_by_first((edge.input, edge.output) for edge in self.architecture.edges)
+        return group_pairs((edge.input, edge.output) for edge in self.architecture.edges)
 
     @cached_property
     def nodes_by_place(self) -> Mapping[str, list[str]]:
         """Return the written nodes of components (`component:ID`), hosts (`host:ID`) and containers."""
-        return _collect_by_first(
+        return group_pairs(
             (place, node.id)
             for node in self.architecture.nodes.values()
             if node.written
@@ -66,7 +67,7 @@ class ElementRelations:
     def topics_by_port(self) -> Mapping[str, list[str]]:
         """Return for each port the topics on which nodes carry it, as written."""
         uses = (use for node in self.architecture.nodes.values() for use in node.uses)
-        return _collect_by_first((use.port, topic) for use in uses if use.port for topic in use.topics)
+        return group_pairs((use.port, topic) for use in uses if use.port for topic in use.topics)
 
     @cached_property
     def users_by_element(self) -> Mapping[str, list[str]]:
@@ -96,13 +97,4 @@ class ElementRelations:
             *self.architecture.groups.values(),
             *self.architecture.components.values(),
         ]
-        return _collect_by_first((element.owner, element.id) for element in elements if element.owner)
-
-
-def _collect_by_first(pairs: Iterable[tuple[str, str]]) -> Mapping[str, list[str]]:
-    """Return the second ones of pairs by the first ones."""
-    collected: dict[str, list[str]] = defaultdict(list)
-    for first, second in pairs:
-        collected[first].append(second)
-    # A defaultdict is returned on purpose: what nobody uses has an empty list.
-    return collected
+        return group_pairs((element.owner, element.id) for element in elements if element.owner)

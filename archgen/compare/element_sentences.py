@@ -6,8 +6,15 @@ from collections import defaultdict
 from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 
 from archgen.compare.comparison import Change
-from archgen.compare.field_changes import read_field_types
-from archgen.compare.key_phrases import format_value, limit_effects, name_partner, shorten_text, shown_id, tick_names
+from archgen.compare.key_phrases import (
+    format_value,
+    limit_effects,
+    name_partner,
+    read_field_types,
+    shorten_text,
+    shown_id,
+    tick_names,
+)
 from archgen.compare.kinds import ELEMENT_KINDS
 from archgen.compare.normal_values import ElementTitle, to_plain_data
 from archgen.compare.version_pair import ComparedElement, ElementKey, VersionPair

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from collections import defaultdict
 from collections.abc import Iterator, Mapping, Sequence
+from typing import Literal
 
 from archgen.compare.comparison import Comparison
 from archgen.compare.element_likeness import MIN_LIKENESS, FeatureMap, measure_likeness
@@ -44,40 +45,47 @@ def find_reshapings(comparison: Comparison) -> Iterator[Reshaping]:
     used_ids = set[str]()
     if has_lost_outputs(versions):
         heirs = list(find_heirs(versions, relations))
-        for reshaping in (*_find_splits(heirs, versions), *_find_mergers(heirs, versions)):
+        for reshaping in (*_find_reshaped("split", heirs, versions), *_find_reshaped("merged", heirs, versions)):
             if used_ids.isdisjoint(reshaping.component_ids):
                 used_ids |= reshaping.component_ids
                 yield reshaping
     yield from find_copies([name for name in added_ids if name not in used_ids], versions, relations[1])
 
 
-def _find_splits(heirs: Sequence[OutputHeir], versions: VersionPair) -> Iterator[Reshaping]:
-    heirs_by_component: dict[str, dict[str, list[OutputHeir]]] = defaultdict(lambda: defaultdict(list))
+def _find_reshaped(
+    kind: Literal["split", "merged"], heirs: Sequence[OutputHeir], versions: VersionPair
+) -> Iterator[Reshaping]:
+    """Yield the old components that were split into new ones, or the new ones that old ones were merged into."""
+    is_split = kind == "split"
+    heirs_by_whole: dict[str, dict[str, list[OutputHeir]]] = defaultdict(lambda: defaultdict(list))
     for heir in heirs:
-        if versions.is_added("component", heir.new_component):
-            heirs_by_component[heir.old_component][heir.new_component].append(heir)
-    for old_component, heirs_by_part in sorted(heirs_by_component.items()):
-        stays = ("component", old_component) in versions.elements_after
-        if not (stays or _are_several(heirs_by_part)):
+        whole, part = heir.old_component, heir.new_component
+        if not is_split:
+            whole, part = part, whole
+        if versions.is_added("component", part) if is_split else versions.is_removed("component", part):
+            heirs_by_whole[whole][part].append(heir)
+    elements = versions.elements_after if is_split else versions.elements_before
+    judge = _judge_part if is_split else _judge_merged
+    for whole, heirs_by_part in sorted(heirs_by_whole.items()):
+        is_on_both_sides = ("component", whole) in elements
+        if not is_on_both_sides and len(heirs_by_part) == 1:
             continue
-        confidence = min(
-            _judge_part(old_component, part, part_heirs, versions) for part, part_heirs in heirs_by_part.items()
-        )
+        confidence = min(judge(whole, part, part_heirs, versions) for part, part_heirs in heirs_by_part.items())
         if confidence >= MIN_LIKENESS:
+            if is_split:
+                parts = [*heirs_by_part, *([whole] if is_on_both_sides else [])]
+            else:
+                parts = [shown_id("component", part, versions) for part in heirs_by_part]
             yield Reshaping(
-                "split",
-                old_component,
-                tuple(sorted([*heirs_by_part, *([old_component] if stays else [])])),
-                describe_split(old_component, heirs_by_part, versions),
+                kind,
+                whole,
+                tuple(sorted(parts)),
+                (describe_split if is_split else describe_merger)(whole, heirs_by_part, versions),
                 confidence,
-                frozenset([old_component, *heirs_by_part]),
+                frozenset([whole, *heirs_by_part]),
                 tuple(heir for part_heirs in heirs_by_part.values() for heir in part_heirs),
                 versions,
             )
-
-
-def _are_several(heirs_by_part: Mapping[str, object]) -> bool:
-    return len(heirs_by_part) > 1
 
 
 def _judge_part(old_component: str, part: str, heirs: Sequence[OutputHeir], versions: VersionPair) -> float:
@@ -97,30 +105,7 @@ def _judge_part(old_component: str, part: str, heirs: Sequence[OutputHeir], vers
     return truncate_confidence(0.5 * mean_likeness + 0.25 * source_share + 0.25 * len(heirs) / max(len(outputs), 1))
 
 
-def _find_mergers(heirs: Sequence[OutputHeir], versions: VersionPair) -> Iterator[Reshaping]:
-    heirs_by_whole: dict[str, dict[str, list[OutputHeir]]] = defaultdict(lambda: defaultdict(list))
-    for heir in heirs:
-        if versions.is_removed("component", heir.old_component):
-            heirs_by_whole[heir.new_component][heir.old_component].append(heir)
-    for whole, heirs_by_part in sorted(heirs_by_whole.items()):
-        was_there = ("component", whole) in versions.elements_before
-        if not (was_there or _are_several(heirs_by_part)):
-            continue
-        confidence = min(_judge_merged(part, whole, part_heirs, versions) for part, part_heirs in heirs_by_part.items())
-        if confidence >= MIN_LIKENESS:
-            yield Reshaping(
-                "merged",
-                whole,
-                tuple(sorted(shown_id("component", part, versions) for part in heirs_by_part)),
-                describe_merger(whole, heirs_by_part, versions),
-                confidence,
-                frozenset([whole, *heirs_by_part]),
-                tuple(heir for part_heirs in heirs_by_part.values() for heir in part_heirs),
-                versions,
-            )
-
-
-def _judge_merged(part: str, whole: str, heirs: Sequence[OutputHeir], versions: VersionPair) -> float:
+def _judge_merged(whole: str, part: str, heirs: Sequence[OutputHeir], versions: VersionPair) -> float:
     """Return how sure it is that a component is a part of another one now: that has its outputs, and reads what it did."""
     outputs = outputs_of(part, versions.elements_before)
     likeness = sum(heir.likeness for heir in heirs) / max(len(outputs), 1)

@@ -21,6 +21,7 @@ from archgen.diagnostics.common_wording import join_words
 from archgen.diagnostics.diagnostic import Diagnostic, Label, Severity
 from archgen.diagnostics.source_span import first_written_span
 from archgen.frozen import NamedTuple, dataclass, field, replace
+from archgen.grouping import group_pairs
 from archgen.model.architecture import Architecture
 from archgen.model.common_callbacks import is_common_callback
 from archgen.model.node import Endpoint, Node
@@ -153,9 +154,7 @@ class EndpointComparer:
     def compare_qos(self, pairs: Iterable[EndpointPair]) -> Iterator[Diagnostic]:
         """Yield where the quality of service is another one than is written, or where nothing is written, no longer fits."""
         pairs = [pair for pair in pairs if pair.designed.flow == "topic"]
-        by_topic: dict[str | None, list[EndpointPair]] = defaultdict(list)
-        for pair in pairs:
-            by_topic[pair.designed.name].append(pair)
+        by_topic = group_pairs((pair.designed.name, pair) for pair in pairs)
         for pair in pairs:
             if not pair.observed.qos:
                 continue

@@ -6,6 +6,7 @@ from collections.abc import Iterable, Iterator, Mapping
 
 from archgen.derivation.port_endpoints import NodePart, filter_uses
 from archgen.frozen import dataclass, field
+from archgen.grouping import group_pairs
 from archgen.model.architecture import Architecture, PortEdge
 from archgen.model.component import Input, Output
 from archgen.model.node import Endpoint, FlowKind, Topic
@@ -33,10 +34,7 @@ def derive_channels(architecture: Architecture, node_parts: Mapping[str, tuple[N
     written_outputs = [each for each in architecture.outputs.values() if nature_of(each) == "other"]
     if not (edges or written_outputs):
         return {}
-    parts_by_component: dict[str, list[NodePart]] = {}
-    for parts in node_parts.values():
-        for part in parts:
-            parts_by_component.setdefault(part.component.id, []).append(part)
+    parts_by_component = group_pairs((part.component.id, part) for parts in node_parts.values() for part in parts)
     channels: dict[str, _ChannelUsers] = {}
     keys_by_output: dict[str, dict[str, None]] = {}
     for output in dict.fromkeys([*(each.id for each in written_outputs), *(edge.output for edge in edges)]):

@@ -11,6 +11,7 @@ from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from archgen.derivation import ros_names
 from archgen.derivation.wire.remap_rules import NodeNames, WireName
 from archgen.frozen import dataclass, field, replace
+from archgen.grouping import group_pairs
 from archgen.model.architecture import Architecture
 from archgen.model.component import Component, Input, Output
 from archgen.model.message_types import flow_of
@@ -47,10 +48,7 @@ def find_node_parts(architecture: Architecture) -> dict[str, tuple[NodePart, ...
             node_counts[component] = node_counts.get(component, 0) + 1
     node_parts: dict[str, tuple[NodePart, ...]] = {}
     for node in architecture.nodes.values():
-        uses: dict[str, list[PortUse]] = {}
-        for use in node.uses:
-            if use.port and not use.internal:
-                uses.setdefault(use.port, []).append(use)
+        uses = group_pairs((use.port, use) for use in node.uses if use.port and not use.internal)
         by_port = {port: tuple(port_uses) for port, port_uses in uses.items()}
         names = NodeNames(node, architecture.distro)
         node_parts[node.id] = tuple(

@@ -6,13 +6,13 @@ read, serve and call. Components are known by the node that is theirs; elements 
 
 from __future__ import annotations
 
-from collections import defaultdict
 from collections.abc import Iterable, Iterator, Mapping
 from typing import Any
 
 from archgen.compare.element_likeness import Feature, find_likely_pairs
 from archgen.edit.earlier_import import copy_mapping, put_value
 from archgen.frozen import dataclass, field
+from archgen.grouping import group_pairs
 from archgen.model.element_ids import make_id, make_unique_id
 
 Slices = Mapping[str, Mapping[str, Any]]
@@ -184,9 +184,7 @@ def _full_name(element_id: str, body: Mapping[str, Any]) -> str:
 
 def _index_unique(pairs: Iterable[tuple[Any, str]]) -> dict[Any, str]:
     """Return ids by what only one of them has."""
-    found: dict[Any, list[str]] = defaultdict(list)
-    for key, element_id in pairs:
-        found[key].append(element_id)
+    found = group_pairs(pairs)
     return {key: ids[0] for key, ids in found.items() if key and len(ids) == 1}
 
 

@@ -14,7 +14,7 @@ from pathlib import Path
 from archgen.diagnostics.diagnostic import Diagnostic
 from archgen.diagnostics.source_span import Span
 from archgen.edit.earlier_import import read_plain_mapping
-from archgen.merge.record_merge import SOURCE_FOLDER
+from archgen.merge.file_merge import SOURCE_FOLDER
 from archgen.pipeline import CheckedProject
 from archgen.project.project_search import name_path_from
 from archgen.regular_files import read_named_file

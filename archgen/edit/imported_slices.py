@@ -26,7 +26,7 @@ from archgen.edit.import_merge import ImportChange, ImportSides, merge_import
 from archgen.edit.said_endpoints import join_endpoints
 from archgen.frozen import dataclass, field
 from archgen.importers.foreign_import import ForeignImport
-from archgen.merge.record_merge import ELSEWHERE_FOLDER, RECORD_FOLDER
+from archgen.merge.file_merge import ELSEWHERE_FOLDER, RECORD_FOLDER
 from archgen.model import element_ids
 from archgen.pipeline import CheckedProject
 from archgen.project import PROJECT_FILE

@@ -12,7 +12,7 @@ from archgen.diagnostics.finding_identity import identify_finding
 from archgen.edit.edit_proof import first_file_of
 from archgen.edit.element_edit import EditRefusedError, FileEdit, read_editable
 from archgen.frozen import NamedTuple
-from archgen.pipeline import CheckedProject, VersionCache
+from archgen.pipeline import CheckedProject
 from archgen.project.project_loading import load_from_files
 from archgen.syntax.file_patterns import YAML_ENDINGS
 from archgen.syntax.project_files import MAX_BYTES, OverlaidFiles
@@ -35,9 +35,7 @@ class ProposedEdit(NamedTuple):
     gone_findings: tuple[Diagnostic, ...]
 
 
-def judge_proposal(
-    checked_project: CheckedProject, changes: Iterable[TextChange], cache: VersionCache | None = None
-) -> ProposedEdit:
+def judge_proposal(checked_project: CheckedProject, changes: Iterable[TextChange]) -> ProposedEdit:
     """Return what some changes of texts would make of a project. Raise EditRefusedError for what cannot be made."""
     contents: dict[str, tuple[bytes | None, str]] = {}
     for change in changes:
@@ -54,7 +52,7 @@ def judge_proposal(
     edits = tuple(_make_edit(file, old, text) for file, (old, text) in sorted(contents.items()))
     files = checked_project.loaded_project.files
     overlaid = OverlaidFiles(files.root, {edit.file: edit.new_content for edit in edits}, files)
-    edited = pipeline.judge_project(load_from_files(overlaid, first_file_of(checked_project)), cache)
+    edited = pipeline.judge_project(load_from_files(overlaid, first_file_of(checked_project)))
     return ProposedEdit(
         edits,
         edited,

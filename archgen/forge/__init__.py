@@ -7,9 +7,8 @@ from __future__ import annotations
 import os
 from collections.abc import Mapping
 
-from archgen.forge.comment_post import CommentOutcome, CommentTarget, put_comment
 from archgen.forge.forge_api import ForgeError, run_within
-from archgen.forge.pull_request import find_merge_request, find_pull_request
+from archgen.forge.pull_request import CommentOutcome, CommentTarget, find_merge_request, find_pull_request, put_comment
 
 TOTAL_SECONDS = 120.0
 """All requests together. Each waits at most 30 s for the next byte, but a server may send a byte now and then."""

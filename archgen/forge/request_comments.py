@@ -11,9 +11,8 @@ from archgen.diagnostics.common_wording import join_words
 from archgen.diagnostics.safe_text import format_json
 from archgen.emit.markdown.comment_sentences import write_code, write_sentence, write_title
 from archgen.emit.markdown.limited_comment import MAX_COMMENT_SIZE, LimitedComment
-from archgen.forge.comment_post import CommentOutcome, put_comment
 from archgen.forge.forge_api import ForgeError, run_within
-from archgen.forge.pull_request import OpenRequest, find_request
+from archgen.forge.pull_request import CommentOutcome, OpenRequest, find_request, put_comment
 from archgen.frozen import NamedTuple
 from archgen.merge.branch_merge import BranchMerge
 from archgen.merge.merge_sentences import describe_conflict

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 from archgen.diagnostics.diagnostic import Diagnostic, Rule, Severity, diagnose_repetition
 from archgen.diagnostics.source_span import NO_SPAN
 from archgen.diagnostics.suggestions import did_you_mean
+from archgen.grouping import group_pairs
 from archgen.language.language_tables import SUPPORTING_KEYS
 from archgen.syntax.yaml_tree import MappingEntry, MappingNode, SequenceNode, find_value, list_entries
 
@@ -47,10 +48,7 @@ def _merge_mappings(mappings: Sequence[MappingNode], path: KeyPath, diagnostics:
     # Most subtrees are in one file only: they are shared with its document instead of being rebuilt.
     if len(mappings) == 1:
         return mappings[0]
-    entries_by_key: dict[str, list[MappingEntry]] = {}
-    for table in mappings:
-        for key, entry in table.entries.items():
-            entries_by_key.setdefault(key, []).append(entry)
+    entries_by_key = group_pairs((key, entry) for table in mappings for key, entry in table.entries.items())
     entries = {key: _merge_entries(several, (*path, key), diagnostics) for key, several in entries_by_key.items()}
     declares = not mappings or any(mapping.declares for mapping in mappings)
     return MappingNode(entries, mappings[0].span if mappings else NO_SPAN, declares)

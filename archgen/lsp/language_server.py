@@ -1,4 +1,7 @@
-"""The server: texts come in, findings go out, and requests are answered from the project as it is at that moment."""
+"""The server: texts come in, findings go out, and requests are answered from the project as it is at that moment.
+
+Findings in the protocol's words: the text is that of `archgen check`.
+"""
 
 from __future__ import annotations
 
@@ -7,24 +10,66 @@ import contextlib
 import gc
 import logging
 import threading
-from collections.abc import Coroutine
+from collections.abc import Callable, Coroutine
 from typing import Any
 
 from lsprotocol import types
 from pygls.exceptions import JsonRpcException
 from pygls.lsp.server import LanguageServer
 from pygls.protocol import LanguageServerProtocol
+from pygls.workspace import PositionCodec
 
-from archgen.diagnostics.diagnostic import Diagnostic
+from archgen.diagnostics.diagnostic import Diagnostic, Severity
 from archgen.diagnostics.safe_text import make_visible
 from archgen.diagnostics.source_span import Span
+from archgen.findings.variant_findings import UNUSED_RULES, phrase_absence
 from archgen.live.edited_project import EditedProject, WholeCheck
 from archgen.live.file_watch import WatchedPlaces, watch_files
 from archgen.lsp.answers import ANSWERS, OPTIONS, RefusedRequestError
-from archgen.lsp.finding_messages import to_message
 from archgen.lsp.open_projects import OpenProjects
-from archgen.lsp.text_positions import to_place, to_range
+from archgen.lsp.text_positions import FindLine, to_place, to_range
+from archgen.pipeline import index_all_rules
 from archgen.project import ProjectNotFoundError
+from archgen.resources import HOME_URL
+
+_SEVERITIES = {
+    Severity.ERROR: types.DiagnosticSeverity.Error,
+    Severity.WARNING: types.DiagnosticSeverity.Warning,
+    Severity.NOTE: types.DiagnosticSeverity.Information,
+}
+_DEPRECATION_RULES = frozenset({"deprecated-use", "expired-use"})
+_UNNEEDED_RULES = UNUSED_RULES - {"uncovered-requirement"}
+
+
+def to_message(
+    finding: Diagnostic, find_line: FindLine, to_uri: Callable[[str], str], codec: PositionCodec
+) -> types.Diagnostic:
+    """Return a finding as the protocol has it."""
+    parts = [finding.message, phrase_absence(finding), f"help: {finding.help}" if finding.help else None]
+    tags = [types.DiagnosticTag.Unnecessary] if finding.rule in _UNNEEDED_RULES else []
+    tags += [types.DiagnosticTag.Deprecated] if finding.rule in _DEPRECATION_RULES else []
+    related = [
+        types.DiagnosticRelatedInformation(
+            types.Location(to_uri(label.span.file), to_range(label.span, find_line, codec)), make_visible(label.text)
+        )
+        for label in finding.labels
+        if label.span.file
+    ]
+    rule = index_all_rules().get(finding.rule)
+    has_page = rule is not None and not rule.origin
+    return types.Diagnostic(
+        range=to_range(finding.span, find_line, codec),
+        message="\n".join(make_visible(part) for part in parts if part),
+        severity=_SEVERITIES[finding.effective_severity],
+        code=finding.rule,
+        code_description=types.CodeDescription(f"{HOME_URL}/blob/main/docs/rules/{finding.rule}.md")
+        if has_page
+        else None,
+        source="archgen",
+        tags=tags or None,
+        related_information=related or None,
+    )
+
 
 _AFTER_A_KEY, _AFTER_THE_LAST, _AT_REST = 0.02, 0.3, 2.0
 """Seconds until a quick check; from the last key until a whole one, and until what waits for a slip to be mended is let go."""

@@ -17,9 +17,15 @@ from archgen.git import GitError
 from archgen.git.text_merge import merge_lines
 from archgen.merge.change_transfer import rename_keys, transfer_changes
 from archgen.merge.renamed_keys import KeyRename, find_renames
-from archgen.merge.sequence_merge import ConflictingRun, MergedRun, merge_sequences
 from archgen.merge.slice_reading import TreeReader, convert_lines, find_line_end, read_normal_tree, read_tree
-from archgen.merge.tree_merge import MergeConflictError, merge_values, read_merged_value
+from archgen.merge.tree_merge import (
+    ConflictingRun,
+    MergeConflictError,
+    MergedRun,
+    merge_sequences,
+    merge_values,
+    read_merged_value,
+)
 from archgen.syntax import yaml_parser
 from archgen.syntax.yaml_tree import MappingNode
 

@@ -10,11 +10,9 @@ from archgen.frozen import dataclass, field
 from archgen.model import port_media
 from archgen.model.agreed_terms import Agreement
 from archgen.model.component import Component, ComponentType, Connection, DiagramLayout, Group, Input, Output
-from archgen.model.conform_settings import ConformSettings
 from archgen.model.coordinate_frames import Frame
 from archgen.model.deployment import Container, Host, Link, Resource
 from archgen.model.element_annotations import NO_ANNOTATIONS, ElementAnnotations, PropertyDeclaration
-from archgen.model.generate_settings import GenerateSettings
 from archgen.model.known_interfaces import Interfaces
 from archgen.model.made_elements import ElementPlace, MadeElement
 from archgen.model.message_types import ConceptualType
@@ -22,7 +20,7 @@ from archgen.model.node import Endpoint, Node, Topic
 from archgen.model.parameter import ParameterValue
 from archgen.model.quantity import Quantity
 from archgen.model.requirement import Requirement
-from archgen.model.review_settings import ReviewSettings
+from archgen.model.review_settings import ConformSettings, GenerateSettings, ReviewSettings
 from archgen.model.source_repository import SourceRepository
 from archgen.model.use_case_steps import Actor, Step
 from archgen.model.variant import Variant

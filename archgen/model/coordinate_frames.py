@@ -7,6 +7,7 @@ from typing import Literal
 
 from archgen.diagnostics.source_span import NO_SPAN, Span
 from archgen.frozen import dataclass, field
+from archgen.grouping import group_pairs
 from archgen.model.element_annotations import NO_ANNOTATIONS, ElementAnnotations
 from archgen.model.quantity import Quantity
 
@@ -57,8 +58,4 @@ def walk_ancestors(frames: Mapping[str, Frame], name: str) -> Iterator[str]:
 
 def index_child_frames(frames: Mapping[str, Frame]) -> dict[str, list[Frame]]:
     """Return the frames that are placed in each name, in their order."""
-    children: dict[str, list[Frame]] = {}
-    for frame in frames.values():
-        if frame.parent is not None:
-            children.setdefault(frame.parent, []).append(frame)
-    return children
+    return group_pairs((frame.parent, frame) for frame in frames.values() if frame.parent is not None)

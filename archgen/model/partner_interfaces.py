@@ -13,6 +13,7 @@ from collections.abc import Collection, Iterable, Iterator, Mapping
 from typing import Literal
 
 from archgen.frozen import dataclass
+from archgen.grouping import group_pairs
 from archgen.model.architecture import Architecture, PortEdge
 from archgen.model.component import Component, Input, Output
 from archgen.model.node import Endpoint, Node, Topic
@@ -88,9 +89,7 @@ def _find_of_pair(finder: _InterfaceFinder) -> tuple[PartnerInterface, ...]:
 
 def _group_edges(ends: InterfaceEnds) -> Mapping[PartnerPair, list[PortEdge]]:
     """Return for each pair of partners all edges of the outputs that may be between them."""
-    edges_by_output: dict[str, list[PortEdge]] = {}
-    for edge in ends.architecture.edges:
-        edges_by_output.setdefault(edge.output, []).append(edge)
+    edges_by_output = group_pairs((edge.output, edge) for edge in ends.architecture.edges)
     edges_by_pair: dict[PartnerPair, list[PortEdge]] = {}
     for output, edges in edges_by_output.items():
         givers = ends.list_port_owners(ends.architecture.outputs[output])

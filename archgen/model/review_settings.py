@@ -1,13 +1,49 @@
-"""How a project reviews changes: the branch to compare with, the severity of breaking changes, accepted changes."""
+"""How a project reviews changes: the branch to compare with, the severity of breaking changes, accepted changes.
+
+How a project is held against the robot that exists: against what, which nodes do not count, accepted differences.
+
+What a project generates: the folder of its workspace, and the backends that write it.
+"""
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from fractions import Fraction
 from typing import Literal
 
 from archgen.diagnostics.diagnostic import Severity
 from archgen.diagnostics.source_span import NO_SPAN, Span
 from archgen.frozen import dataclass, field, fields
+
+
+@dataclass(frozen=True, slots=True)
+class GenerateSettings:
+    """The section `generate`. `into` is relative to the project's folder; of each backend its options, as texts."""
+
+    into: str | None = None
+    backends: Mapping[str, Mapping[str, str]] = field(default_factory=dict)
+
+
+@dataclass(frozen=True, slots=True)
+class AcceptedDifference:
+    """What the rules may find at an element, by the id that findings name, and why; `until` is the tag that ends it."""
+
+    element: str
+    rules: tuple[str, ...]
+    reason: str
+    until: str | None = None
+    at: Span = field(default=NO_SPAN, compare=False, repr=False)
+
+
+@dataclass(frozen=True, slots=True)
+class ConformSettings:
+    """The section `conform`. Paths in `against` are relative to the project's folder; `*` in `ignore` is any characters."""
+
+    against: tuple[str, ...] = ()
+    launch: tuple[str, ...] = ()
+    ignore: tuple[str, ...] = ()
+    accepted: tuple[AcceptedDifference, ...] = ()
+
 
 AGREEMENT_FOLDER, AGREEMENT_SUFFIX = "review", ".yaml"
 BreakCategory = Literal["wire", "promise", "meaning", "source", "foreign", "agreement"]

@@ -11,6 +11,7 @@ from functools import cached_property
 
 from archgen.diagnostics.suggestions import NAMES_HELP, find_closest
 from archgen.frozen import dataclass, field, replace
+from archgen.grouping import group_pairs
 from archgen.model import flow_graph
 from archgen.model.architecture import Architecture
 from archgen.model.graph_search import find_reachable
@@ -114,11 +115,9 @@ class SelectorEvaluator:
     @cached_property
     def nodes_by_component(self) -> Mapping[str, list[str]]:
         """The ids of the nodes that implement each component."""
-        nodes: dict[str, list[str]] = defaultdict(list)
-        for node in self.architecture.nodes.values():
-            for component in node.implements:
-                nodes[component].append(node.id)
-        return nodes
+        return group_pairs(
+            (component, node.id) for node in self.architecture.nodes.values() for component in node.implements
+        )
 
     @cached_property
     def readers_by_output(self) -> Mapping[str, list[str]]:

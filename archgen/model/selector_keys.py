@@ -239,7 +239,7 @@ def _find_by_property(architecture: Architecture, text: str) -> SelectorHit:
 def find_elements_of(architecture: Architecture, element_ids: Iterable[str]) -> SelectorHit:
     """Return the components and nodes that findings are about; a finding on a group is about all of its components."""
     components, nodes = set[str](), set[str]()
-    for element_id in (_find_holder(architecture, each) for each in element_ids):
+    for element_id in (find_port_holder(architecture, each) for each in element_ids):
         if element_id in architecture.components:
             components.add(element_id)
         elif element_id in architecture.shells:
@@ -251,7 +251,7 @@ def find_elements_of(architecture: Architecture, element_ids: Iterable[str]) -> 
     return SelectorHit(frozenset(components), frozenset(nodes))
 
 
-def _find_holder(architecture: Architecture, element_id: str) -> str:
+def find_port_holder(architecture: Architecture, element_id: str) -> str:
     """Return the component of a port, composed or not; any other id is returned unchanged."""
     port = architecture.inputs.get(element_id) or architecture.outputs.get(element_id)
     if port:

@@ -14,6 +14,7 @@ import re
 from collections.abc import Iterator
 from typing import Literal
 
+from archgen.diagnostics.source_span import Span
 from archgen.diagnostics.suggestions import find_closest
 from archgen.frozen import dataclass
 
@@ -60,6 +61,16 @@ class SelectorProblem:
     end: int
     severity: Literal["error", "warning"] = "error"
     help: str | None = None
+
+    def locate(self, text: str, span: Span) -> Span:
+        """Return the place of what it is about in a selector that stands at a place, quoted or not; else that of all."""
+        # The span includes quotes if there are any: it is longer than the text by 0 or 2 columns. Anything else (escapes,
+        # several lines) does not map to columns of the text.
+        quote_width = span.end_column - span.column - len(text)
+        if span.line != span.end_line or quote_width not in {0, 2}:
+            return span
+        start = span.column + quote_width // 2
+        return span._replace(column=start + self.start, end_column=start + max(self.end, self.start + 1))
 
 
 @dataclass(frozen=True, slots=True)

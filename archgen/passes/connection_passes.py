@@ -16,7 +16,7 @@ from archgen.link.port_sources import PortKey, PortSource
 from archgen.passes.linked_tree import LinkedTree
 from archgen.passes.pass_shape import Pass, PassWork
 from archgen.passes.type_probes import link_types
-from archgen.passes.written_places import list_holders
+from archgen.passes.written_places import list_holders, path_of_component
 from archgen.syntax.yaml_tree import MappingEntry, ScalarNode, SequenceNode
 
 _SIDES = {"input": "inputs", "output": "outputs"}
@@ -177,7 +177,7 @@ def _write_place(
             continue
         for holder, sources_by_path in sources_by_holder.items():
             if path in sources_by_path and not holder.is_probe:
-                _write_sources(work, (*_path_of(holder.id), *path), sources_by_path[path], (*place, key))
+                _write_sources(work, (*path_of_component(holder.id), *path), sources_by_path[path], (*place, key))
 
 
 def _write_sources(work: PassWork, path: TreePath, sources: _FoundSources, statement: TreePath) -> None:
@@ -186,12 +186,6 @@ def _write_sources(work: PassWork, path: TreePath, sources: _FoundSources, state
         for number, reference in enumerate(sources.references)
     ]
     work.tree.set((*path, "from"), SequenceNode(list(items), items[0].span), statement)
-
-
-def _path_of(component_id: str) -> TreePath:
-    """Return the path at which an instance changes what is inside of it, by the complete id of what it changes."""
-    group_id, *names = component_id.split(".")
-    return ("groups", group_id, *(step for name in names for step in ("components", name)))
 
 
 CONNECT_COMPONENTS = Pass(

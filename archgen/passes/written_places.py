@@ -118,3 +118,9 @@ def _says_existing(architecture: Architecture, component: Component) -> bool:
         return True
     around = (component, *architecture.list_around(component))
     return any((each.component_type or "").startswith(f"{SHIPPED_ID}.") for each in around)
+
+
+def path_of_component(component_id: str) -> TreePath:
+    """Return the path at which an instance changes what is inside of it, by the complete id of what it changes."""
+    group_id, *names = component_id.split(".")
+    return ("groups", group_id, *(step for name in names for step in ("components", name)))

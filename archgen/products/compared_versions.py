@@ -20,7 +20,7 @@ from archgen.diagnostics.common_wording import shorten_hash
 from archgen.diagnostics.diagnostic import Severity
 from archgen.diagnostics.rule_options import format_percentage
 from archgen.frozen import dataclass, replace
-from archgen.git.commit_authors import find_last_commit, find_own_mail, list_author_mails
+from archgen.git.commit_log import find_last_commit, find_own_mail, list_author_mails
 from archgen.git.project_revision import differs_from_head
 from archgen.link.project_linking import link_type_patterns
 from archgen.model.review_settings import agreement_file

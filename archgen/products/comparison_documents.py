@@ -12,6 +12,7 @@ from archgen.compare import Comparison
 from archgen.diagnostics.common_wording import shorten_hash
 from archgen.frozen import replace
 from archgen.products.compared_versions import WORKING_TREE_NAME, ProjectVersion
+from archgen.products.output_options import OutputOptions
 from archgen.views.changes.comparison_document import ComparisonDocument, ReadingErrors, describe_comparison
 
 if TYPE_CHECKING:
@@ -20,7 +21,6 @@ if TYPE_CHECKING:
 
     from archgen.emit.picture import Picture
     from archgen.pipeline import CheckedProject
-    from archgen.products.output_options import OutputOptions
     from archgen.views.changes.site_changes import SiteChanges
     from archgen.views.picture_shapes import Graph
 

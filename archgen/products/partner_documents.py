@@ -3,19 +3,22 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING, Literal
+from typing import Literal
 
 from archgen.diagnostics.safe_text import format_json
+from archgen.emit.data.partner_json import impact_to_json, tasks_to_json
+from archgen.emit.terminal.outline_text import write_outline_lines
 from archgen.model.architecture import Partner
 from archgen.pipeline import CheckedProject
 from archgen.products.agreement_documents import make_timed_lookup
+from archgen.products.compared_versions import WORKING_TREE_NAME, ProjectVersion, compare_named_versions
 from archgen.products.outline_markdown import render_outline_markdown
+from archgen.timing.chains.word_resolution import unknown_name_text
 from archgen.views.agreement.exchange_tables import gather_exchanges
+from archgen.views.elements import element_names
 from archgen.views.lookup import Lookup
+from archgen.views.reliance import impact_outline, partner_impact, partner_tasks, task_outline
 from archgen.views.shapes import Outline
-
-if TYPE_CHECKING:
-    from archgen.products.compared_versions import ProjectVersion
 
 DocumentFormat = Literal["text", "markdown", "json"]
 
@@ -38,9 +41,6 @@ def write_impact(  # noqa: PLR0913 - what may be asked
 
     Raise ComponentsError where a word names no component, or none of his.
     """
-    from archgen.emit.data.partner_json import impact_to_json
-    from archgen.views.reliance import impact_outline, partner_impact
-
     lookup = make_timed_lookup(checked_project)
     late = partner_impact.find_parts_of(lookup, partner) if partner else None
     if words:
@@ -67,10 +67,6 @@ def write_tasks(
     width: int | None = None,
 ) -> str:
     """Write what a partner has to do, with what others changed for him since an earlier version."""
-    from archgen.emit.data.partner_json import tasks_to_json
-    from archgen.products.compared_versions import WORKING_TREE_NAME, ProjectVersion, compare_named_versions
-    from archgen.views.reliance import partner_impact, partner_tasks, task_outline
-
     lookup = make_timed_lookup(checked_project)
     exchanges = gather_exchanges(lookup)
     impact = partner_impact.find_impact(lookup, exchanges, partner_impact.find_parts_of(lookup, partner))
@@ -83,9 +79,6 @@ def write_tasks(
 
 
 def _find_components(lookup: Lookup, words: Sequence[str]) -> list[str]:
-    from archgen.timing.chains.word_resolution import unknown_name_text
-    from archgen.views.elements import element_names
-
     names: list[str] = []
     for word in words:
         found = [name for kind, name in element_names.find_elements(lookup, word) if kind in {"component", "composed"}]
@@ -98,6 +91,4 @@ def _find_components(lookup: Lookup, words: Sequence[str]) -> list[str]:
 def _render_outline(outline: Outline, form: DocumentFormat, width: int | None) -> str:
     if form == "markdown":
         return render_outline_markdown(outline)
-    from archgen.emit.terminal.outline_text import write_outline_lines
-
     return "".join(f"{line}\n" for line in write_outline_lines(outline, width))

@@ -1,18 +1,30 @@
-"""The site of a project in memory: a page is made when somebody asks for it, from the files as they are now."""
+"""The site of a project in memory: a page is made when somebody asks for it, from the files as they are now.
+
+All pages of one state of a project: which there are, what leads where, and what their scripts read.
+
+What is wrong in the files, for a page: place, words and line of each error.
+"""
 
 from __future__ import annotations
 
 import gc
+import json
 import secrets
 import threading
 import time
+from collections.abc import Iterable, Iterator, Mapping
+from functools import cached_property
 from pathlib import Path
+from typing import Any
 
+from archgen.diagnostics.diagnostic import Severity, sort_gravest_first
+from archgen.diagnostics.safe_text import make_visible
 from archgen.emit import site
 from archgen.emit.site import page_pictures
 from archgen.emit.site.chapter_html import ChapterWriter
-from archgen.emit.site.page_links import renew_ids
-from archgen.emit.site.script_files import EXPLORER_ANCHOR
+from archgen.emit.site.matrix_files import build_matrix_files
+from archgen.emit.site.page_links import open_page, renew_ids
+from archgen.emit.site.script_files import EXPLORER_ANCHOR, build_explorer_files, build_search_files
 from archgen.frozen import dataclass, field, replace
 from archgen.live.file_watch import WatchedPlaces, join_paths
 from archgen.live.warm_project import WarmProject
@@ -23,7 +35,6 @@ from archgen.products.output_options import OutputOptions
 from archgen.project import ProjectNotFoundError
 from archgen.project.project_search import PROJECT_FILE
 from archgen.resources import resource_path
-from archgen.serve.error_notes import LiveStatus, list_error_notes
 from archgen.serve.live_pictures import LivePictures
 from archgen.serve.project_state import (
     ProjectState,
@@ -33,10 +44,127 @@ from archgen.serve.project_state import (
     renew_changes,
     renew_history,
 )
-from archgen.serve.site_index import SiteIndex, list_page_drawings, make_index
+from archgen.views.explorer import make_explorer_map
 from archgen.views.pages.report_outline import make_notices
 from archgen.views.pages.single_page import make_page_at
-from archgen.views.shapes import Page
+from archgen.views.pages.site_pages import make_pages
+from archgen.views.search import make_search_entries
+from archgen.views.shapes import Block, Figure, Page, Section
+
+
+@dataclass(frozen=True, slots=True)
+class LiveStatus:
+    """What readers are told: which version there is to see, and what is wrong in the files."""
+
+    version: str = ""
+    shown_since: str = ""
+    """The time of day (`14:02:11`) of the state that is shown."""
+    errors: tuple[ErrorNote, ...] = ()
+    further_errors: int = 0
+    is_outdated: bool = False
+    """Whether the files as they are cannot be shown, so that an older state is."""
+
+    def to_json(self) -> str:
+        """Return the status as one line."""
+        fields = {
+            "version": self.version,
+            "since": self.shown_since,
+            "errors": self.errors,
+            "further": self.further_errors,
+            "outdated": self.is_outdated,
+        }
+        return json.dumps(fields, ensure_ascii=True)
+
+
+ErrorNote = Mapping[str, Any]
+_MAX_NOTES = 20
+"""A page shows so many errors, and says how many more there are."""
+
+
+def list_error_notes(checked_project: CheckedProject) -> tuple[tuple[ErrorNote, ...], int]:
+    """Return the first errors of a project as plain data, and how many there are beside them."""
+    errors = [
+        finding
+        for finding in sort_gravest_first(checked_project.findings)
+        if finding.effective_severity is Severity.ERROR
+    ]
+    notes = tuple(
+        {
+            "place": make_visible(str(error.span)) if error.span.file else "",
+            "message": make_visible(error.message),
+            "help": make_visible(error.help or ""),
+            "rule": error.rule,
+            "line": make_visible(checked_project.sources.line_of(error.span.file, error.span.line) or ""),
+            "column": error.span.column,
+        }
+        for error in errors[:_MAX_NOTES]
+    )
+    return notes, len(errors) - len(notes)
+
+
+@dataclass(frozen=True)
+class SiteIndex:
+    """All pages of one state: which there are, what leads where, and what the search finds."""
+
+    state: ProjectState
+    frame: site.SiteFrame
+    pages: Mapping[str, Page]
+    """By their paths."""
+
+    @cached_property
+    def search_files(self) -> Mapping[str, bytes]:
+        """The files of the search, by their paths."""
+        entries = make_search_entries(self.state.lookup, tuple(self.pages.values()))
+        return dict(build_search_files(entries, self.frame.links))
+
+    @cached_property
+    def map_files(self) -> Mapping[str, bytes]:
+        """The files with what the explorer shows, by their paths."""
+        return build_explorer_files(make_explorer_map(self.state.lookup), self.frame.links)
+
+    @cached_property
+    def matrix_files(self) -> Mapping[str, bytes]:
+        """The files of all matrices, by their paths."""
+        links = self.frame.links
+        return {
+            name: data
+            for path, page in self.pages.items()
+            if page.matrix
+            for name, data in build_matrix_files(page.matrix, open_page(path, links))
+        }
+
+    def find_data_file(self, path: str) -> bytes | None:
+        """Return a file that the scripts of pages read, None where there is none of this path."""
+        if path.startswith("assets/search/"):
+            return self.search_files.get(path)
+        return self.map_files.get(path) if path.startswith("assets/explorer/") else self.matrix_files.get(path)
+
+
+def make_index(state: ProjectState) -> SiteIndex:
+    """Make all pages of a state."""
+    pages = make_pages(state.lookup, state.edition)
+    frame = site.make_frame(
+        pages, title=state.checked_project.architecture.project.title, revision=state.edition.revision, notices=()
+    )
+    return SiteIndex(state, frame, {frame.links.files[page.path]: page for page in pages})
+
+
+def list_page_drawings(page: Page) -> Iterator[str]:
+    """Yield the ids of the drawings that a page shows."""
+    for card in page.dashboard.cards if page.dashboard else ():
+        yield from _list_graphs(card.blocks)
+    pending_sections: list[Section] = [page.section]
+    while pending_sections:
+        section = pending_sections.pop()
+        yield from _list_graphs(section.blocks)
+        pending_sections += section.sections
+
+
+def _list_graphs(blocks: Iterable[Block]) -> Iterator[str]:
+    for block in blocks:
+        if isinstance(block, Figure):
+            yield from filter(None, (block.graph, block.narrow))
+
 
 _IDLE_TIME = 0.4
 """Seconds without a change after which the whole site is made anew: until then a reader's page comes first. Where that took

@@ -8,6 +8,7 @@ from typing import TypeVar
 
 from archgen.diagnostics.diagnostic import Diagnostic
 from archgen.frozen import dataclass, field, replace
+from archgen.grouping import group_pairs
 from archgen.model.architecture import Architecture, Chain
 from archgen.model.component import Component, Connection, Input, Output
 from archgen.model.component_nesting import find_component, list_members, list_surrounding, list_written_connections
@@ -16,6 +17,7 @@ from archgen.model.known_interfaces import InterfaceField
 from archgen.model.message_types import ConceptualType
 from archgen.model.node import Endpoint, Node, Topic
 from archgen.model.port_media import ROS
+from archgen.model.selector_keys import find_port_holder
 from archgen.model.source_repository import SourceRepository
 from archgen.model.step_connections import UseCaseSteps
 from archgen.timing.system import message_sizes
@@ -182,7 +184,7 @@ def make_lookup(
         connection_positions=group_values(_list_ends(architecture, written_connections)),
         nodes_of=group_values((component, node) for node in nodes for component in node.implements),
         endpoints_of=group_values((endpoint.node, endpoint) for endpoint in architecture.list_endpoints()),
-        findings_of=group_values((_containing_element(architecture, f.element), f) for f in all_findings if f.element),
+        findings_of=group_values((find_port_holder(architecture, f.element), f) for f in all_findings if f.element),
         components_for_requirement=components_for_requirement,
         chains_for_requirement=chains_for_requirement,
         requirement_trace=trace_requirements(
@@ -228,23 +230,9 @@ def _list_ends(
             yield from ((shell, position) for shell in list_surrounding(architecture, component_id))
 
 
-def _containing_element(architecture: Architecture, element_id: str) -> str:
-    """Return the component of a port id; any other id is returned unchanged."""
-    port = architecture.inputs.get(element_id) or architecture.outputs.get(element_id)
-    if port:
-        return port.component
-    holder, _, name = element_id.rpartition(".")
-    shell = architecture.shells.get(holder)
-    is_port = shell is not None and (name in shell.inputs or name in shell.outputs)
-    is_component = element_id in architecture.components or element_id in architecture.shells
-    return holder if is_port and not is_component else element_id
-
-
 def group_values(pairs: Iterable[tuple[str, T]]) -> dict[str, tuple[T, ...]]:
     """Collect values by key; keys and values keep the order in which they come."""
-    lists_by_key: defaultdict[str, list[T]] = defaultdict(list)
-    for key, item in pairs:
-        lists_by_key[key].append(item)
+    lists_by_key = group_pairs(pairs)
     return {key: tuple(items) for key, items in lists_by_key.items()}
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from archgen.frozen import dataclass
+from archgen.grouping import group_pairs
 
 
 @dataclass(frozen=True, slots=True)
@@ -94,7 +95,4 @@ def fold_matrix(matrix: Matrix) -> Matrix:
 
 def count_cells(matrix: Matrix) -> dict[tuple[int, int], list[MatrixFlow]]:
     """Return what stands in each cell that is not empty, by row and column."""
-    cells: dict[tuple[int, int], list[MatrixFlow]] = {}
-    for flow in matrix.flows:
-        cells.setdefault((flow.row, flow.column), []).append(flow)
-    return cells
+    return group_pairs(((flow.row, flow.column), flow) for flow in matrix.flows)

@@ -9,13 +9,14 @@ import pytest
 from archgen import project
 from archgen.checking.checked_project import CheckedProject
 from archgen.checking.merged_project import merge_project
-from archgen.checking.pass_judging import read_origins, transform_project
-from archgen.checking.variant_judging import (
+from archgen.checking.pass_judging import (
     UnknownVariantError,
     judge_in_variants,
     keep_variant_findings,
     list_variant_names,
+    read_origins,
     stand_in_variants,
+    transform_project,
 )
 from archgen.timing.run_analysis import AnalysisMemory
 

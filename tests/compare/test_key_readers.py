@@ -8,9 +8,9 @@ from typing import Any
 
 from archgen import pipeline
 from archgen.compare.kinds import ELEMENT_KINDS
-from archgen.compare.kinds.described_keys import make_form_reader
 from archgen.compare.kinds.key_readers import READERS
 from archgen.compare.kinds.key_spec import ReadContext
+from archgen.compare.kinds.kind_spec import make_form_reader
 from archgen.compare.matched_ids import MatchedIds
 from archgen.language.comparison_tables import KEY_FACTS, KeyFacts
 from archgen.products.compared_versions import make_comparison_input

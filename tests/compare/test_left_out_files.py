@@ -8,7 +8,7 @@ from typing import Any
 import pytest
 
 from archgen.compare.comparison import Change
-from archgen.compare.left_out_files import find_affected_names, find_left_out
+from archgen.compare.edits import find_affected_names, find_left_out
 from tests.compare.elements import by_key, element, pair
 
 

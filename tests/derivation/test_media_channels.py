@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
-from archgen.derivation.inner_memory import mark_inner_memory
+from archgen.derivation.low_level import mark_inner_memory
 from archgen.derivation.media_channels import derive_channels
 from archgen.derivation.port_endpoints import find_node_parts
 from archgen.model.architecture import Architecture

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from archgen.git.commit_authors import find_last_commit, find_own_mail, list_author_mails
+from archgen.git.commit_log import find_last_commit, find_own_mail, list_author_mails
 from archgen.git.repository_lookup import find_repository
 from tests import repositories
 

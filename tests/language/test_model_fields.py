@@ -17,13 +17,12 @@ from archgen.link.declare.element_declaration import DECLARERS, find_declarer
 from archgen.link.value_readers import VALUE_READERS, find_type, find_value_reader, list_held_keys
 from archgen.model.architecture import Architecture
 from archgen.model.component import PerformanceIndicator
-from archgen.model.conform_settings import ConformSettings
 from archgen.model.declared_timing import Timing
 from archgen.model.element_annotations import PropertyDeclaration
 from archgen.model.node import Qos
 from archgen.model.parameter import Operation, Parameter
 from archgen.model.report_settings import ReportSettings
-from archgen.model.review_settings import ReviewSettings
+from archgen.model.review_settings import ConformSettings, ReviewSettings
 from archgen.model.start_up import ReadyConditions, StartUp
 from archgen.model.use_case_steps import Actor
 from tests.compare.test_element_kinds import MODEL_CLASSES, ROBOT, SECTIONS

@@ -13,14 +13,19 @@ from archgen.diagnostics.source_span import Span
 from archgen.diagnostics.suggested_fixes import apply_edits
 from archgen.edit.element_edit import EditRefusedError
 from archgen.live.edited_project import EditedProject
-from archgen.lsp.answers import ANSWERS, OPTIONS, RefusedRequestError
+from archgen.lsp.answers import (
+    ANSWERS,
+    OPTIONS,
+    RefusedRequestError,
+    describe_component,
+    find_flow_component,
+    list_flows,
+)
 from archgen.lsp.completion import list_offers
 from archgen.lsp.document_outline import list_folds, list_symbols
 from archgen.lsp.element_hints import list_inlays, list_lenses, list_tokens
 from archgen.lsp.element_navigation import describe_element, describe_key, find_declared, find_element, list_mentions
-from archgen.lsp.finding_messages import to_message
-from archgen.lsp.flow_hierarchy import describe_component, find_flow_component, list_flows
-from archgen.lsp.language_server import create_server
+from archgen.lsp.language_server import create_server, to_message
 from archgen.lsp.open_projects import OpenProjects, name_file
 from archgen.lsp.quick_fixes import find_findings, list_fixes, plan_certain_edits
 from archgen.lsp.rename_request import plan_edits

@@ -4,8 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from archgen.merge.file_merge import merge_contents
-from archgen.merge.record_merge import is_record, merge_records
+from archgen.merge.file_merge import is_record, merge_contents, merge_records
 from archgen.merge.slice_merge import SliceVersions
 
 HEADER = "# From r.launch.py by `archgen import launch`; with --merge it is brought up to date.\n"

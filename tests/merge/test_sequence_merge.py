@@ -6,7 +6,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from archgen.merge.sequence_merge import MergedRun, merge_sequences
+from archgen.merge.tree_merge import MergedRun, merge_sequences
 
 
 def merge(base: str, ours: str, theirs: str) -> str:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from archgen.schema.list_wording import describe_list, split_ids, suggest_list
+from archgen.schema.schema_wording import describe_list, split_ids, suggest_list
 from tests.schema.findings import find_mistakes
 
 

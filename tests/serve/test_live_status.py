@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 
-from archgen.serve.error_notes import LiveStatus
+from archgen.serve.live_site import LiveStatus
 
 
 def test_the_status_is_one_line_of_json_that_any_page_may_hold() -> None:

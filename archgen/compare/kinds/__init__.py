@@ -1,6 +1,6 @@
 """The table of kinds: what elements of each kind have, how it is compared, matched and worded.
 
-A kind has its keys from the description of the language (`described_keys`), and beside them what is no key of it. What
+A kind has its keys from the description of the language (`derive_keys`), and beside them what is no key of it. What
 elements are recognised by is a `FeatureSpec` in the module of their kind. tests/compare/test_element_kinds.py compares the
 table with the description, the model, the resolved record and the cards.
 """

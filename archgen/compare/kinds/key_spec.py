@@ -12,6 +12,7 @@ from archgen.compare.architecture_version import ArchitectureVersion
 from archgen.compare.matched_ids import MatchedIds
 from archgen.compare.normal_values import is_unset
 from archgen.frozen import dataclass
+from archgen.grouping import group_pairs
 from archgen.model.architecture import Architecture
 from archgen.model.component import Component, ComponentType, Group
 from archgen.model.message_types import ConceptualType
@@ -63,11 +64,9 @@ class ReadContext:
     @cached_property
     def nodes_by_component(self) -> Mapping[str, list[Node]]:
         """Return for each component its nodes, planned ones included."""
-        nodes_of_component: dict[str, list[Node]] = {}
-        for node in self.architecture.nodes.values():
-            for component in node.implements:
-                nodes_of_component.setdefault(component, []).append(node)
-        return nodes_of_component
+        return group_pairs(
+            (component, node) for node in self.architecture.nodes.values() for component in node.implements
+        )
 
     @cached_property
     def owners_by_place(self) -> Mapping[str, frozenset[str]]:
@@ -117,7 +116,7 @@ Reader = Callable[[Any, ReadContext], Any]
 
 @dataclass(frozen=True, slots=True)
 class KeySpec:
-    """One key of a kind, most of them as the description of the language has them (`described_keys`). A name that ends in
+    """One key of a kind, most of them as the description of the language has them (`derive_keys`). A name that ends in
     a dot stands for all keys that begin with it: `read` returns a mapping from the rest of the key to the value.
 
     `read` returns the value in normal form: equal values mean the same, however they are written. Without it the value

@@ -11,6 +11,7 @@ from archgen.compare.losses.change_context import ChangeContext, PartnerLoss, ti
 from archgen.compare.version_pair import ElementKey
 from archgen.diagnostics.common_wording import join_words
 from archgen.frozen import NamedTuple, replace
+from archgen.grouping import group_pairs
 from archgen.model.architecture import Architecture, UseCase
 from archgen.model.component import Connection
 from archgen.model.graph_search import find_reachable
@@ -305,11 +306,9 @@ def _take_over_end(context: ChangeContext, end: StepEnd) -> StepEnd:
 
 def _list_ways(steps: Iterable[ConnectedStep]) -> Mapping[str, list[str]]:
     """Return where the steps lead from each participant, without those that run along nothing."""
-    ways: dict[str, list[str]] = defaultdict(list)
-    for each in steps:
-        if not each.is_broken:
-            ways[each.step.source.participant].append(each.step.target.participant)
-    return ways
+    return group_pairs(
+        (each.step.source.participant, each.step.target.participant) for each in steps if not each.is_broken
+    )
 
 
 def _list_parts(context: ChangeContext, use_case: UseCase) -> Mapping[str, list[str]]:

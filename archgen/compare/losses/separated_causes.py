@@ -15,6 +15,7 @@ from archgen.derivation import derive_low_level
 from archgen.diagnostics.common_wording import fit_lines, join_words
 from archgen.diagnostics.source_span import NO_SPAN
 from archgen.frozen import NamedTuple, dataclass, replace
+from archgen.grouping import group_pairs
 from archgen.model.architecture import Architecture, PortEdge
 from archgen.model.component import Component, Output
 from archgen.model.declared_timing import Timing
@@ -272,9 +273,7 @@ class CauseSeparator:
         """
         context = self._context
         wholes = {_find_whole(context, context.changes[index]) for index in indices} - {None}
-        groups: dict[object, list[int]] = {}
-        for index in indices:
-            groups.setdefault(self._find_origin(context.changes[index], wholes) or index, []).append(index)
+        groups = group_pairs((self._find_origin(context.changes[index], wholes) or index, index) for index in indices)
         return [
             _ChangeGroup(
                 tuple(members),

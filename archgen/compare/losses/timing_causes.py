@@ -14,6 +14,7 @@ from archgen.compare.losses.lost_connections import find_output_causes
 from archgen.compare.matched_ids import MatchedIds
 from archgen.compare.timing_pair import TimingPair, can_affect_timing
 from archgen.compare.version_pair import ComparedElement, ElementKey
+from archgen.grouping import group_pairs
 from archgen.model.architecture import Architecture
 from archgen.model.quantity import Quantity
 from archgen.timing.analysis import Analysis
@@ -247,8 +248,4 @@ def _numeric_value(element: ComparedElement | None, key: str) -> Fraction | None
 
 
 def _group_by_owner(owned_names: Iterable[tuple[str | None, str]]) -> dict[str, list[str]]:
-    names_by_owner: dict[str, list[str]] = {}
-    for owner, name in owned_names:
-        if owner:
-            names_by_owner.setdefault(owner, []).append(name)
-    return names_by_owner
+    return group_pairs((owner, name) for owner, name in owned_names if owner)

@@ -10,6 +10,7 @@ from archgen.diagnostics.suggested_fixes import TextEdit, apply_edits
 from archgen.edit.edit_proof import first_file_of
 from archgen.edit.element_edit import BYTE_ORDER_MARK, FileEdit, read_editable
 from archgen.frozen import dataclass
+from archgen.grouping import group_pairs
 from archgen.pipeline import CheckedProject, VersionCache
 from archgen.project.project_loading import LoadedProject, load_from_files
 from archgen.syntax.project_files import OverlaidFiles
@@ -42,9 +43,7 @@ def judge_edited(version: JudgedVersion, contents: Mapping[str, bytes]) -> Judge
 
 def edit_files(version: JudgedVersion, edits: Sequence[TextEdit]) -> tuple[FileEdit, ...]:
     """Return the files that edits change, in the order of their names. Raise EditRefusedError for one that cannot be read."""
-    edits_by_file: dict[str, list[TextEdit]] = {}
-    for edit in edits:
-        edits_by_file.setdefault(edit.span.file, []).append(edit)
+    edits_by_file = group_pairs((edit.span.file, edit) for edit in edits)
     changed = []
     for file, own_edits in sorted(edits_by_file.items()):
         content, text = read_editable(version.project, file)

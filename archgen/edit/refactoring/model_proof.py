@@ -17,6 +17,7 @@ from archgen.compare.normal_values import ElementTitle
 from archgen.diagnostics.diagnostic import Diagnostic
 from archgen.edit.refactoring.renamed_ids import RenamedIds
 from archgen.frozen import NamedTuple
+from archgen.grouping import group_pairs
 from archgen.model.architecture import Architecture
 from archgen.model.node import Endpoint
 from archgen.model.selector_evaluation import SelectorEvaluator
@@ -139,9 +140,7 @@ def _match_ids(old: Architecture, new: Architecture, renamed: RenamedIds) -> Mat
 
 def _match_made_nodes(old: Architecture, new: Architecture, renamed: RenamedIds) -> Iterator[tuple[str, str]]:
     """Yield the ids of nodes that follow from components, where these are called otherwise now."""
-    new_nodes: dict[tuple[str, ...], list[str]] = {}
-    for node in new.nodes.values():
-        new_nodes.setdefault(tuple(node.implements), []).append(node.id)
+    new_nodes = group_pairs((tuple(node.implements), node.id) for node in new.nodes.values())
     for node in old.nodes.values():
         implemented = tuple(renamed.map_id("component", each) for each in node.implements)
         candidates = new_nodes.get(implemented, [])

@@ -24,9 +24,9 @@ class LimitedComment:
     used_size: int = 0
     is_cut: bool = False
 
-    def has_room_for(self, text: str, reserve: int = _CLOSING_RESERVE) -> bool:
+    def has_room_for(self, text: str) -> bool:
         """Whether there is room for a block."""
-        return self.used_size + count_characters(text) + 2 <= self.limit - reserve
+        return self.used_size + count_characters(text) + 2 <= self.limit - _CLOSING_RESERVE
 
     def add_block(self, text: str) -> None:
         """Add a block if it fits, else mark the comment as cut."""

@@ -94,15 +94,13 @@ class SiteFrame:
     """The path of the report from the site's folder, where there is one."""
 
 
-def make_frame(
-    pages: Sequence[Page], *, title: str, revision: str, notices: Sequence[Paragraph], version: str = ""
-) -> SiteFrame:
+def make_frame(pages: Sequence[Page], *, title: str, revision: str, notices: Sequence[Paragraph]) -> SiteFrame:
     """Make what the pages of a site have in common: titles, links and navigation."""
     links = collect_links(pages)
     navigation = build_navigation(
         pages, links, tuple((entry["kind"], entry["title"]) for entry in _read_backend().options["navigation"])
     )
-    return SiteFrame(title, revision, notices, links, navigation, version=version)
+    return SiteFrame(title, revision, notices, links, navigation)
 
 
 def write_page(

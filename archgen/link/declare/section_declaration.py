@@ -18,10 +18,16 @@ from archgen.link.reference_resolution import ReferenceResolver
 from archgen.link.value_readers import read_element, read_values
 from archgen.model.agreed_terms import Agreement, Signature
 from archgen.model.architecture import Chain, Policy, ProjectInfo, SourceDemand, View, Waypoint
-from archgen.model.conform_settings import AcceptedDifference, ConformSettings
-from archgen.model.generate_settings import GenerateSettings
 from archgen.model.path_resolver import ElementRef
-from archgen.model.review_settings import BREAK_CATEGORIES, AcceptedChange, BreakPolicy, ReviewSettings
+from archgen.model.review_settings import (
+    BREAK_CATEGORIES,
+    AcceptedChange,
+    AcceptedDifference,
+    BreakPolicy,
+    ConformSettings,
+    GenerateSettings,
+    ReviewSettings,
+)
 from archgen.model.source_repository import DEFAULT_BRANCH, SourceRepository
 from archgen.model.variant import BASE_NAME, Variant, WrittenChange
 from archgen.syntax.yaml_tree import MappingEntry, MappingNode, ScalarNode, SequenceNode, YamlNode

@@ -8,7 +8,6 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator
 
 from archgen.diagnostics.diagnostic import Diagnostic, Severity
-from archgen.diagnostics.source_span import Span
 from archgen.frozen import NamedTuple, dataclass
 from archgen.link import mapping_values
 from archgen.link.element_outline import ElementOutline
@@ -40,7 +39,7 @@ def select_left_out(selector: ScalarNode, evaluator: SelectorEvaluator, variant_
                 Diagnostic(
                     "wrong-selector",
                     problem.message,
-                    _find_span(selector, problem.start, problem.end),
+                    problem.locate(selector.text, selector.span),
                     severity=Severity.ERROR,
                     help=problem.help,
                     element=variant_id,
@@ -52,7 +51,7 @@ def select_left_out(selector: ScalarNode, evaluator: SelectorEvaluator, variant_
         Diagnostic(
             "empty-variant-selector",
             f"`without` takes nothing out: {problem.message}",
-            _find_span(selector, problem.start, problem.end),
+            problem.locate(selector.text, selector.span),
             help=problem.help or "it selects components and nodes of the project that the variant is built on",
             element=variant_id,
         )
@@ -63,16 +62,6 @@ def select_left_out(selector: ScalarNode, evaluator: SelectorEvaluator, variant_
             Diagnostic("empty-variant-selector", "`without` takes nothing out", selector.span, element=variant_id)
         ]
     return SelectedElements(selection.components, selection.nodes, tuple(idle_words))
-
-
-def _find_span(selector: ScalarNode, start: int, end: int) -> Span:
-    """Return the place of some characters of a selector, quoted or not; of one over several lines that of all."""
-    span = selector.span
-    quote_width = span.end_column - span.column - len(selector.text)
-    if span.line != span.end_line or quote_width not in {0, 2}:
-        return span
-    first = span.column + quote_width // 2
-    return span._replace(column=first + start, end_column=first + max(end, start + 1))
 
 
 def prune_selectors(root: MappingNode, removed: RemovedElements, evaluator: SelectorEvaluator) -> MappingNode:

@@ -17,6 +17,7 @@ from archgen.passes.linked_tree import LinkedTree
 from archgen.passes.patterns.architecture_view import ArchitectureView
 from archgen.passes.patterns.pattern_shapes import ViewValue
 from archgen.passes.patterns.view_values import read_view_value
+from archgen.passes.written_places import path_of_component
 from archgen.syntax.yaml_tree import MappingEntry, YamlNode, list_entries
 
 Bodies = dict[str, dict[str, ViewValue]]
@@ -67,7 +68,7 @@ class ModelFacts:
         if section == "nodes":
             # The component that brings it along, or that it is planned for.
             runners = self._made.implements.get(name) or self._architecture.nodes[name].implements
-            return (*_path_of(runners[0]), "node")
+            return (*path_of_component(runners[0]), "node")
         return None
 
     def note_edit(self, section: str, name: str, path: TreePath) -> None:
@@ -203,12 +204,6 @@ class ModelFacts:
 def _read_body(node: YamlNode) -> dict[str, ViewValue]:
     value = read_view_value(node, lambda _: None, {})
     return value if isinstance(value, dict) else {}
-
-
-def _path_of(component_id: str) -> TreePath:
-    """Return where a component says what is its own, also where it stands inside of an instance."""
-    group, *inner = component_id.split(".")
-    return ("groups", group, *(step for each in inner for step in ("components", each)))
 
 
 def _list_paths(component_id: str) -> Iterator[str]:

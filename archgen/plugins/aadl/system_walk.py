@@ -7,10 +7,15 @@ from archgen.plugins.aadl.aadl_tree import Path
 from archgen.plugins.aadl.archgen_words import find_own_text, read_node_words
 from archgen.plugins.aadl.component_bodies import Body, map_node_ports, name_use_section
 from archgen.plugins.aadl.element_hints import keep_sources
-from archgen.plugins.aadl.model_roots import ModelRoots
 from archgen.plugins.aadl.port_mapping import MappedPort
 from archgen.plugins.aadl.property_values import PropertyScope, read_first_text
-from archgen.plugins.aadl.robot_groups import LaunchedSystem, PortPlace, ProcessInstance, list_ports_behind_end
+from archgen.plugins.aadl.robot_groups import (
+    LaunchedSystem,
+    ModelRoots,
+    PortPlace,
+    ProcessInstance,
+    list_ports_behind_end,
+)
 from archgen.plugins.aadl.structures import ClassifierStructure, StructuredPart, WireEnd
 
 MAX_INSTANCES = 50_000

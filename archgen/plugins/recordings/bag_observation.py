@@ -30,9 +30,14 @@ from archgen.plugin.importing import (
     parse_yaml,
 )
 from archgen.plugin.ros import full_message_name, load_shipped_interfaces
-from archgen.plugins.recordings.bag_metadata import BAG_KEY, list_bag_topics, parse_bag, read_bag_duration
 from archgen.plugins.recordings.recorded_figures import RecordedFigures
-from archgen.plugins.recordings.recording_import import BAG_METADATA
+from archgen.plugins.recordings.recording_import import (
+    BAG_KEY,
+    BAG_METADATA,
+    list_bag_topics,
+    parse_bag,
+    read_bag_duration,
+)
 from archgen.plugins.recordings.recording_lines import RecordingError, RecordingSource
 
 _EXTRA = "pip install 'archgen[recordings]'"

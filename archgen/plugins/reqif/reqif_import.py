@@ -3,6 +3,10 @@
 Take the requirements out of a ReqIF document; each of its objects is accounted for.
 
 Ids for the objects of a ReqIF file: the same object gets the same id in each import.
+
+The requirements that earlier imports brought, found again by what the other tool calls them: it stands in their hints.
+
+What the attributes of ReqIF files mean, by the names that Doors, Polarion and others give them.
 """
 
 from __future__ import annotations
@@ -10,21 +14,125 @@ from __future__ import annotations
 import hashlib
 import re
 from collections.abc import Iterable, Iterator, Mapping
+from dataclasses import dataclass, field
+from functools import lru_cache
 from pathlib import Path
 from typing import Any, Literal
 
 from archgen.plugin.importing import MAX_ID_LENGTH, ImportedRequirements, ObjectAccount, needs_quotes, spell_in_ascii
 from archgen.plugin.model import Requirement
-from archgen.plugins.reqif.attribute_meanings import (
-    HEADING_SORTS,
-    PART_RELATIONS,
-    ReadMeanings,
-    fold_attribute_name,
-    read_meanings,
+from archgen.plugins.reqif.reqif_files import ReqifDocument, ReqifObject, read_reqif_file
+
+_NAMES_BY_MEANING: Mapping[str, tuple[str, ...]] = {
+    "id": ("foreignid", "objectidentifier", "identifier", "id", "reqid", "requirementid"),
+    "prefix": ("prefix", "idprefix"),
+    "deleted": ("foreigndeleted",),
+    "name": ("name", "title", "objectshorttext", "summary", "shorttext"),
+    "text": ("text", "objecttext", "primarytext"),
+    "description": ("description",),
+    "heading": ("chaptername", "objectheading", "heading"),
+    "sort": ("objecttype", "artifacttype", "reqtype", "type"),
+    "kind": ("kind", "requirementtype", "requirementkind", "category"),
+    "priority": ("priority", "importance"),
+    "rationale": ("rationale", "justification"),
+    "source": ("source", "origin"),
+    "tags": ("tags", "labels"),
+}
+"""Names without case, blanks and signs, and without `ReqIF.` in front; the first that an object has counts."""
+MEANING_BY_NAME = {name: meaning for meaning, names in _NAMES_BY_MEANING.items() for name in names}
+_RANKS = {name: rank for names in _NAMES_BY_MEANING.values() for rank, name in enumerate(names)}
+HEADING_SORTS = frozenset(
+    {"heading", "chapter", "ueberschrift", "überschrift", "information", "info", "folder", "document"}
 )
-from archgen.plugins.reqif.known_requirements import KnownRequirements, find_known_requirements, make_identity_hints
-from archgen.plugins.reqif.reqif_document import ReqifDocument, ReqifObject
-from archgen.plugins.reqif.reqif_files import read_reqif_file
+"""What an object of these types says is no requirement."""
+PART_RELATIONS = frozenset(
+    {
+        "partof",
+        "ispartof",
+        "parent",
+        "hasparent",
+        "childof",
+        "refines",
+        "derives",
+        "derivedfrom",
+        "decomposes",
+        "archgenpartof",
+    }
+)
+"""Relations from a part to what it is part of."""
+
+
+@lru_cache(4096)
+def fold_attribute_name(name: str) -> str:
+    """Return a name as names are compared: `ReqIF.ForeignID` is `foreignid`."""
+    folded = "".join(letter for letter in name.casefold() if letter.isalnum())
+    return folded.removeprefix("reqif") or folded
+
+
+@dataclass(frozen=True, slots=True)
+class ReadMeanings:
+    """An object's values by what they mean; those of an enumeration with several values one by one; other attributes."""
+
+    values: dict[str, str]
+    chosen: dict[str, list[str]]
+    unknown_names: list[str]
+
+
+def read_meanings(document: ReqifDocument, entry: ReqifObject) -> ReadMeanings:
+    """Return what an object's attributes mean."""
+    values: dict[str, tuple[int, str]] = {}
+    chosen: dict[str, list[str]] = {}
+    unknown_names: list[str] = []
+    choices = {key: [document.names.get(each, each) for each in ids] for key, ids in entry.choices.items()}
+    texts = {key: ", ".join(words) for key, words in choices.items()}
+    for definition, text in (*entry.values.items(), *texts.items()):
+        name = document.names.get(definition, "")
+        folded = fold_attribute_name(name)
+        meaning = MEANING_BY_NAME.get(folded)
+        if meaning is None:
+            unknown_names.append(name or definition)
+        elif meaning not in values or _RANKS[folded] < values[meaning][0]:
+            # A blank at the end of a prefix stands between it and the number.
+            values[meaning] = (_RANKS[folded], text if meaning == "prefix" else text.strip())
+            chosen[meaning] = choices.get(definition, [])
+    found_values = {meaning: text for meaning, (_, text) in values.items()}
+    return ReadMeanings(found_values, {key: words for key, words in chosen.items() if words}, unknown_names)
+
+
+HINTS_KEY = "reqif"
+
+
+@dataclass(frozen=True, slots=True)
+class KnownRequirements:
+    """Ids of requirements by the identifiers of their objects, and by the ids of the other tool as it writes them."""
+
+    by_identifier: Mapping[str, str] = field(default_factory=dict)
+    by_foreign_id: Mapping[str, str] = field(default_factory=dict)
+
+    def find(self, identifier: str, foreign_id: str) -> str | None:
+        """Return the requirement of an object: its identifier stays the same when somebody numbers anew in the other tool."""
+        return self.by_identifier.get(identifier) or self.by_foreign_id.get(foreign_id)
+
+
+def find_known_requirements(requirements: Iterable[Requirement]) -> KnownRequirements:
+    """Return what the hints of requirements say of other tools."""
+    by_identifier: dict[str, str] = {}
+    by_foreign_id: dict[str, str] = {}
+    for requirement in requirements:
+        hints = requirement.annotations.hints.get(HINTS_KEY)
+        if not isinstance(hints, Mapping):
+            continue
+        for key, ids in (("identifier", by_identifier), ("id", by_foreign_id)):
+            # Whoever writes `id: 12` by hand means the text.
+            if (name := hints.get(key)) not in {None, ""}:
+                ids.setdefault(str(name), requirement.id)
+    return KnownRequirements(by_identifier, by_foreign_id)
+
+
+def make_identity_hints(identifier: str, foreign_id: str, made_id: str) -> dict[str, dict[str, str]]:
+    """Return the hints by which the next import finds a requirement, whatever it is called by then."""
+    named = {"identifier": identifier, "id": foreign_id if foreign_id != made_id else ""}
+    return {HINTS_KEY: {key: text for key, text in named.items() if text}}
 
 
 def read_requirements(file: Path, requirements: Iterable[Requirement]) -> ImportedRequirements:

@@ -6,8 +6,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Any
 
-from archgen.plugins.tables.column_headings import TableHeadings
-from archgen.plugins.tables.heading_words import KEY_BY_HEADING, fold_heading
+from archgen.plugins.tables.column_headings import KEY_BY_HEADING, TableHeadings, fold_heading
 from archgen.plugins.tables.imported_project import ImportedComponent, ImportedProject
 from archgen.plugins.tables.table_cells import TableCell, TableRow
 

@@ -10,8 +10,7 @@ from typing import Any
 from archgen.plugin.findings import Severity
 from archgen.plugin.importing import Span
 from archgen.plugins.tables import column_headings, row_records
-from archgen.plugins.tables.column_headings import HeadingMap, TableHeadings
-from archgen.plugins.tables.heading_words import TARGETS, TOTAL_WORDS, fold_heading
+from archgen.plugins.tables.column_headings import TARGETS, TOTAL_WORDS, HeadingMap, TableHeadings, fold_heading
 from archgen.plugins.tables.imported_project import ImportedProject
 from archgen.plugins.tables.row_records import TableRecord
 from archgen.plugins.tables.table_cells import TableCell, TableRow, TableSheet, make_error

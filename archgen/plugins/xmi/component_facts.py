@@ -11,8 +11,8 @@ from dataclasses import dataclass, field
 from archgen.plugin.importing import XmlElement
 from archgen.plugins.xmi.import_ledger import OWN_PREFIX, ImportLedger, name_element
 from archgen.plugins.xmi.port_facts import InterfaceUses, PortFacts
-from archgen.plugins.xmi.template_classes import TemplateClasses, TypeArguments
 from archgen.plugins.xmi.uml_catalogue import UmlCatalogue
+from archgen.plugins.xmi.uml_data_types import TemplateClasses, TypeArguments
 from archgen.plugins.xmi.uml_index import get_id, get_kind, get_name, is_true, list_child_elements
 
 _TYPE_PREFIX = f"{OWN_PREFIX}component_type."

@@ -2,16 +2,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 
 from archgen.frozen import dataclass, field
+from archgen.model.architecture import Architecture
 from archgen.timing.search.chain_budgets import SharedBudget
 from archgen.views.agreement.interface_record import InterfaceRecord, SignatureRecord
-from archgen.views.agreement.term_changes import AgreementChanges
+from archgen.views.agreement.term_changes import AgreementChanges, mark_changed_names
 from archgen.views.graphs.element_boxes import join_owner_titles
 from archgen.views.lookup import Lookup
 from archgen.views.picture_shapes import Graph
-from archgen.views.shapes import Paragraph
+from archgen.views.shapes import Paragraph, Text
 
 
 @dataclass(frozen=True, slots=True)
@@ -42,3 +43,9 @@ class AgreementContent:
     def pair_titles(self) -> tuple[str, str]:
         """Return the titles of both partners."""
         return join_owner_titles(self.lookup, self.pair[:1]), join_owner_titles(self.lookup, self.pair[1:])
+
+    def mark_changes(self, list_terms: Callable[[Architecture], Mapping[str, object]]) -> dict[str, Text]:
+        """Return what happened to each name since the earlier revision; nothing where no changes are asked for."""
+        if self.changes is None or self.earlier_lookup is None:
+            return {}
+        return mark_changed_names(list_terms(self.lookup.architecture), list_terms(self.earlier_lookup.architecture))

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 
+from archgen.grouping import group_pairs
 from archgen.model.architecture import Partner
 from archgen.model.partner_interfaces import PartnerInterface
 from archgen.views import inline_text
@@ -198,11 +199,7 @@ def write_open_points_section(content: AgreementContent) -> Section:
 
 def _group_open_points(records: Sequence[InterfaceRecord]) -> Mapping[str, Sequence[InterfaceRecord]]:
     """Return the interfaces at which each point is open."""
-    grouped: dict[str, list[InterfaceRecord]] = {}
-    for record in records:
-        for point in record.terms.open_points:
-            grouped.setdefault(point, []).append(record)
-    return grouped
+    return group_pairs((point, record) for record in records for point in record.terms.open_points)
 
 
 def _interface_link(record: InterfaceRecord) -> Text:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 
 from archgen.frozen import dataclass
+from archgen.grouping import group_pairs
 from archgen.model.latest_result import remember_latest
 from archgen.model.partner_interfaces import PartnerPair, components_at_ends, find_all_interfaces
 from archgen.timing.system import activity_builder
@@ -191,10 +192,7 @@ def _make_chip(word: str, status: Status) -> Inlines:
 
 def group_open_terms(interfaces: Iterable[InterfaceTerms]) -> Mapping[TermName, list[InterfaceTerms]]:
     """Return the open terms by name, that of most interfaces first."""
-    grouped: dict[TermName, list[InterfaceTerms]] = {}
-    for terms in interfaces:
-        for name in terms.open_names:
-            grouped.setdefault(name, []).append(terms)
+    grouped = group_pairs((name, terms) for terms in interfaces for name in terms.open_names)
     return dict(sorted(grouped.items(), key=lambda entry: -len(entry[1])))
 
 

@@ -17,7 +17,7 @@ from archgen.timing.search.chain_budgets import SharedBudget
 from archgen.views import inline_text, start_phrases
 from archgen.views.agreement.agreement_content import AgreementContent
 from archgen.views.agreement.interface_record import InterfaceRecord
-from archgen.views.agreement.term_changes import AgreementChanges, mark_changed_names
+from archgen.views.agreement.term_changes import AgreementChanges
 from archgen.views.graphs.element_boxes import join_owner_titles
 from archgen.views.sequences.sequence_blocks import make_step_table
 from archgen.views.shapes import (
@@ -126,14 +126,11 @@ def _frame_row(content: AgreementContent, shared: SharedFrame, mark: Text | None
 
 
 def _mark_frames(content: AgreementContent) -> dict[str, Text]:
-    """Return what happened to each frame since the earlier revision; nothing where no changes are asked for."""
-    if content.changes is None or content.earlier_lookup is None:
-        return {}
-    shown, earlier = (
-        {shared.frame.id: _plain_terms(shared) for shared in find_shared_frames(architecture, *content.pair)}
-        for architecture in (content.lookup.architecture, content.earlier_lookup.architecture)
+    return content.mark_changes(
+        lambda architecture: {
+            shared.frame.id: _plain_terms(shared) for shared in find_shared_frames(architecture, *content.pair)
+        }
     )
-    return mark_changed_names(shown, earlier)
 
 
 def _plain_terms(shared: SharedFrame) -> tuple[object, ...]:

@@ -1,6 +1,8 @@
 """The terms of an interface, as readers see them.
 
 No term names a line of a file: text that moves changes nothing between the partners.
+
+What holds where data is late or missing, as far as the model says it; nothing is added to that.
 """
 
 from __future__ import annotations
@@ -11,14 +13,15 @@ from archgen.frozen import dataclass, replace
 from archgen.model.agreed_terms import INTERFACE_TERMS, find_agreement
 from archgen.model.component import Component
 from archgen.model.node import Endpoint, Qos
-from archgen.model.partner_interfaces import PartnerInterface, components_at_ends, foreign_owners
+from archgen.model.partner_interfaces import PartnerInterface, components_at_ends, foreign_owners, list_givers
 from archgen.model.ros_distro import is_ros_1
 from archgen.timing.analysis import ChainResult
 from archgen.timing.system import activity_builder
 from archgen.views import inline_text
 from archgen.views.agreement import interface_timing, interface_versions, message_fields, output_promises
-from archgen.views.agreement.missing_data import list_missing_data_duties
+from archgen.views.agreement.interface_timing import find_giver_timing
 from archgen.views.agreement.open_points import describe_open_term, find_contradictions, find_late_chains
+from archgen.views.agreement.output_promises import CountedPort
 from archgen.views.agreement.promise_rows import (
     QOS_OFFERED,
     RATE,
@@ -32,6 +35,53 @@ from archgen.views.element_references import message_link
 from archgen.views.graphs.element_boxes import join_owner_titles, name_in_place
 from archgen.views.lookup import Lookup
 from archgen.views.shapes import Fact, Inlines, Text
+
+
+def list_missing_data_duties(
+    lookup: Lookup, interface: PartnerInterface, ports: Sequence[CountedPort], giver: str, taker: str
+) -> Iterator[str]:
+    """Yield sentences on what each side, named by its title, promises or bears where data does not come in time.
+
+    `ports` are the outputs whose word counts for its readers.
+    """
+    architecture = lookup.architecture
+    givers = list_givers(lookup.architecture, interface)
+    sentences: dict[str, None] = {}
+    for endpoint in givers:
+        output_timing = find_giver_timing(lookup, endpoint).outputs.get(endpoint.port or "")
+        if interface.flow == "topic" and output_timing and output_timing.conditional:
+            max_gap = output_timing.max_gap or next((each.promise.max_gap for each in ports), None)
+            sentences[_describe_silence(giver, str(max_gap or ""))] = None
+        if interface.flow == "topic" and not is_ros_1(architecture.distro):
+            sentences |= dict.fromkeys(_describe_qos_limits(giver, endpoint))
+    for promise in (each.promise for each in ports):
+        if promise.max_gap and not any(f" {promise.max_gap} pass " in each for each in sentences):
+            sentences[f"{giver} lets no more than {promise.max_gap} pass between two messages."] = None
+        if promise.max_age:
+            sentences[f"{giver} promises that what is read is no older than {promise.max_age}."] = None
+    for input_port in interface.inputs:
+        if input_port.optional:
+            component = architecture.components[input_port.component].title
+            sentences[f"{component} of {taker} works without it: its input `{input_port.name}` is optional."] = None
+    yield from sentences
+
+
+def _describe_silence(giver: str, max_gap: str) -> str:
+    if max_gap:
+        return f"It is sent only when there is something to send, but {giver} lets no more than {max_gap} pass between two messages."
+    return f"It is sent only when there is something to send: {giver} does not promise how long it may be silent."
+
+
+def _describe_qos_limits(giver: str, endpoint: Endpoint) -> Iterator[str]:
+    """Yield what the quality of service promises: ROS 2 itself tells both sides where a deadline or lease is missed."""
+    qos = endpoint.qos
+    if qos.deadline:
+        yield f"{giver} lets no more than {qos.deadline} pass between two messages (deadline of the quality of service)."
+    if qos.lifespan:
+        yield f"A message that is older than {qos.lifespan} is not delivered any more (lifespan)."
+    if qos.lease_duration:
+        yield f"{giver} counts as gone after {qos.lease_duration} without a sign of life (lease duration)."
+
 
 _FLOW_NAMES = {"topic": "Topic", "service": "Service", "action": "Action", "physical": ""}
 _SETTLED_TERMS = {"type", "message", RATE.key, "size", "response"}

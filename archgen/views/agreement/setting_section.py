@@ -16,7 +16,6 @@ from archgen.model.setting_sharing import (
 )
 from archgen.views import inline_text
 from archgen.views.agreement.agreement_content import AgreementContent
-from archgen.views.agreement.term_changes import mark_changed_names
 from archgen.views.elements.parameter_blocks import describe_limits, describe_types
 from archgen.views.graphs.element_boxes import join_owner_titles
 from archgen.views.shapes import (
@@ -128,14 +127,7 @@ def _list_operations(architecture: Architecture, pair: tuple[str, str]) -> tuple
 
 
 def _mark_settings(content: AgreementContent) -> dict[str, Text]:
-    """Return what happened to each since the earlier revision; nothing where no changes are asked for."""
-    if content.changes is None or content.earlier_lookup is None:
-        return {}
-    shown, earlier = (
-        _list_terms(architecture, content.pair)
-        for architecture in (content.lookup.architecture, content.earlier_lookup.architecture)
-    )
-    return mark_changed_names(shown, earlier)
+    return content.mark_changes(lambda architecture: _list_terms(architecture, content.pair))
 
 
 def _list_terms(architecture: Architecture, pair: tuple[str, str]) -> _Terms:

@@ -16,6 +16,7 @@ from archgen.compare.interface_figures import DELAY_NAMES
 from archgen.compare.key_phrases import tick_names
 from archgen.diagnostics.common_wording import join_words
 from archgen.frozen import dataclass, replace
+from archgen.grouping import group_pairs
 from archgen.timing.figures.figure_wording import format_compared, format_duration
 from archgen.timing.figures.timing_values import TimingValue
 from archgen.views.changes.figure_lines import FigureLine, describe_figure, join_partners
@@ -158,9 +159,7 @@ def _write_sooner(boundaries: Sequence[_Boundary], partner_names: Mapping[str, s
 
 def _list_by_names(boundaries: Iterable[_Boundary], partner_names: Mapping[str, str]) -> Iterator[str]:
     """Yield which figures of which interfaces: `rate and largest gap of `a` from X to Y`."""
-    changes_by_names: dict[tuple[str, ...], list[BoundaryChange]] = {}
-    for boundary in boundaries:
-        changes_by_names.setdefault(boundary.lost_names, []).append(boundary.change)
+    changes_by_names = group_pairs((boundary.lost_names, boundary.change) for boundary in boundaries)
     for names, changes in changes_by_names.items():
         figures = f"{join_words([_PHRASES.get(name, name) for name in names])} of " if len(names) <= _MAX_NAMES else ""
         yield f"{figures}{_name_interfaces(changes, partner_names)}"

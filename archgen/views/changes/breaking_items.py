@@ -10,9 +10,8 @@ from collections.abc import Collection, Iterator, Mapping, Sequence
 
 from archgen.compare import Change, Comparison
 from archgen.compare.change_sentences import READERS_LEAD
-from archgen.compare.edits import Edit
+from archgen.compare.edits import Edit, find_affected_names, find_left_out
 from archgen.compare.key_phrases import shorten_text, tick_names
-from archgen.compare.left_out_files import find_affected_names, find_left_out
 from archgen.diagnostics.common_wording import fit_lines, join_words
 from archgen.diagnostics.diagnostic import Diagnostic, Severity
 from archgen.frozen import dataclass, replace

@@ -8,6 +8,7 @@ from collections.abc import Collection, Iterable, Mapping, Sequence
 from itertools import pairwise
 
 from archgen.frozen import dataclass
+from archgen.grouping import group_pairs
 from archgen.model.flow_graph import FlowGraph, build_node_graph
 from archgen.model.graph_search import find_strong_components
 from archgen.views.graphs.drawn_level import list_flows
@@ -102,9 +103,7 @@ def place_in_columns(items: Sequence[str], weights: FlowWeights, *, is_inner: bo
     linked_items = [item for item in items if item in linked_ids]
     flows = {ends: weight for ends, weight in weights.items() if ends[0] != ends[1]}
     column_count = _choose_column_count(len(items), is_inner=is_inner)
-    successors: dict[str, list[str]] = defaultdict(list)
-    for tail, head in flows:
-        successors[tail].append(head)
+    successors = group_pairs(flows)
     ordered: list[str] = []
     for component in find_strong_components(linked_items, lambda item: successors[item]):
         ordered += component if len(component) == 1 else _sort_loop(component, flows)
@@ -157,10 +156,7 @@ def _sort_by_layer(ordered: Sequence[str], flows: FlowWeights) -> list[str]:
     """Sort by the longest way from a start, so that neighbours in the order seldom feed one another."""
     position = {item: index for index, item in enumerate(ordered)}
     layer = dict.fromkeys(ordered, 0)
-    sources: dict[str, list[str]] = defaultdict(list)
-    for tail, head in flows:
-        if position[tail] < position[head]:
-            sources[head].append(tail)
+    sources = group_pairs((head, tail) for tail, head in flows if position[tail] < position[head])
     for item in ordered:
         layer[item] = max((layer[source] + 1 for source in sources[item]), default=0)
     return sorted(ordered, key=lambda item: (layer[item], position[item]))

@@ -214,12 +214,11 @@ def name_severity(severities: Iterable[Severity]) -> BadgeSeverity | None:
     return None if worst is None else cast("BadgeSeverity", worst.value)  # `off` is only a setting
 
 
-def neighbour_box(lookup: Lookup, component: Component, side: Literal["left", "right"] | None, suffix: str = "") -> Box:
+def neighbour_box(lookup: Lookup, component: Component, side: Literal["left", "right"] | None) -> Box:
     """Return the box of a component of another group: grey, with its group's title below its own."""
     place = [lookup.architecture.groups[component.group].title, join_surrounding_titles(lookup, component)]
     return replace(
         component_box(lookup, component, lines=(" · ".join(filter(None, place)),)),
-        id=component.id + suffix,
         style="composed" if component.children else "component",
         emphasis="neighbour",
         cluster=None,
@@ -246,14 +245,13 @@ def group_box(lookup: Lookup, group_id: str, *, lines: Iterable[str] = ()) -> Bo
     )
 
 
-def group_frame(lookup: Lookup, group_id: str, *, is_subject: bool = False, is_neighbour: bool = False) -> Cluster:
+def group_frame(lookup: Lookup, group_id: str) -> Cluster:
     """Return a group as a frame round its components."""
     group = lookup.architecture.groups[group_id]
     return Cluster(
         group_id,
         group.title,
         colour=group_hue(lookup, group_id),
-        emphasis="subject" if is_subject else "neighbour" if is_neighbour else "normal",
         ref=f"group:{group_id}",
         tooltip=group.title,
     )

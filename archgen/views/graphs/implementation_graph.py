@@ -6,6 +6,7 @@ from collections.abc import Collection, Iterator, Sequence
 
 from archgen.diagnostics.common_wording import fit_lines
 from archgen.frozen import dataclass, replace
+from archgen.grouping import group_pairs
 from archgen.model.node import Endpoint, Node, Topic
 from archgen.model.port_media import ROS, key_of_carrier, label_of_medium
 from archgen.views.graphs import element_boxes
@@ -127,9 +128,7 @@ def _bundle_topics(topic_arrows: list[_TopicArrow]) -> dict[str, str]:
     arrows_of_topic: dict[str, set[_TopicArrow]] = {}
     for end in topic_arrows:
         arrows_of_topic.setdefault(end.topic, set()).add(replace(end, topic=""))
-    bundles: dict[frozenset[_TopicArrow], list[str]] = {}
-    for topic, ends in arrows_of_topic.items():
-        bundles.setdefault(frozenset(ends), []).append(topic)
+    bundles = group_pairs((frozenset(ends), topic) for topic, ends in arrows_of_topic.items())
     return {topic: f"+ {names[0]}" for names in bundles.values() if len(names) >= _MIN_STARRED for topic in names}
 
 

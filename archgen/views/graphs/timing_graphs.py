@@ -10,6 +10,7 @@ from typing import Literal
 
 from archgen.diagnostics.common_wording import fit_lines
 from archgen.frozen import dataclass, replace
+from archgen.grouping import group_pairs
 from archgen.timing.system.timing_system import Activity, Arc
 from archgen.views.graphs import element_boxes
 from archgen.views.graphs.graph_folding import add_legend_keys, fold_graph
@@ -78,9 +79,7 @@ def _draw_selected_nodes(graph_data: TimingGraphData, node_ids: Collection[str])
     outside_ids = dict.fromkeys(
         end for run in touching_flows for end in (run.tail, run.head) if end not in own_activities
     )
-    neighbours_by_frame: dict[str, list[str]] = {}
-    for name in outside_ids:
-        neighbours_by_frame.setdefault(graph_data.home_frames[name], []).append(name)
+    neighbours_by_frame = group_pairs((graph_data.home_frames[name], name) for name in outside_ids)
     graph = Graph(
         "timing",
         "The selected part: how often everything happens",

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from archgen.compare.losses.wire_heirs import find_wire_heirs
+from archgen.compare.losses.change_context import find_wire_heirs
 from tests.compare.conftest import Compared
 
 HEAD = "ros: {distro: jazzy}\ngroups: {g: {components: {"

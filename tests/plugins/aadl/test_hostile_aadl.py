@@ -10,9 +10,9 @@ import pytest
 
 from archgen.importers.foreign_files import read_bounded
 from archgen.importers.foreign_import import ForeignFileError
-from archgen.plugins.aadl import aadl_import, hardware_tree, system_walk
+from archgen.plugins.aadl import aadl_import, hardware_mapping, system_walk
 from archgen.plugins.aadl.aadl_import import read_aadl
-from archgen.plugins.aadl.hardware_tree import HardwareTree
+from archgen.plugins.aadl.hardware_mapping import HardwareTree
 from archgen.plugins.aadl.token_cursor import TooManyTokensError, scan_tokens
 from tests.plugins.aadl.aadl_texts import MODELS, import_package, import_text, list_faults, merge_slices, tell_notes
 
@@ -124,7 +124,7 @@ def test_circles_end(tmp_path: Path) -> None:
 
 
 def test_parts_that_double_at_each_level_are_refused(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    for module in (aadl_import, hardware_tree, system_walk):
+    for module in (aadl_import, hardware_mapping, system_walk):
         monkeypatch.setattr(module, "MAX_INSTANCES", 2000)
     levels = [
         f"system s{level} end s{level};\nsystem implementation s{level}.i subcomponents"

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from archgen.plugins.recordings import bag_metadata
+from archgen.plugins.recordings import recording_import
 from archgen.plugins.recordings.recording_import import read_recordings
 from tests.plugins.recordings.recorded import list_figures, list_problems, list_unmapped, make_names, read
 
@@ -81,5 +81,5 @@ def test_a_broken_file_gives_nothing(tmp_path: Path, text: str) -> None:
 
 
 def test_a_file_that_is_too_large_is_refused(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(bag_metadata, "_MAX_BYTES", 100)
+    monkeypatch.setattr(recording_import, "_MAX_BYTES", 100)
     assert list_problems(read(tmp_path, _bag())) == ["1 error: metadata.yaml has more than 100 bytes"]

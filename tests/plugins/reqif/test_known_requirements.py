@@ -7,13 +7,14 @@ import time
 from archgen.diagnostics.source_span import NO_SPAN
 from archgen.model.element_annotations import ElementAnnotations
 from archgen.model.requirement import Requirement
-from archgen.plugins.reqif.known_requirements import (
+from archgen.plugins.reqif.reqif_files import ReqifDocument, ReqifObject
+from archgen.plugins.reqif.reqif_import import (
     KnownRequirements,
+    cut_circles,
     find_known_requirements,
     make_identity_hints,
+    take_requirements,
 )
-from archgen.plugins.reqif.reqif_document import ReqifDocument, ReqifObject
-from archgen.plugins.reqif.reqif_import import cut_circles, take_requirements
 
 
 def known(*hints: object) -> KnownRequirements:

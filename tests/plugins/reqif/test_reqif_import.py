@@ -11,9 +11,9 @@ import pytest
 
 from archgen.importers.foreign_import import ForeignFileError, ImportedRequirements
 from archgen.plugins.reqif import reqif_files as files_module
-from archgen.plugins.reqif.attribute_meanings import fold_attribute_name
 from archgen.plugins.reqif.reqif_files import XhtmlText, read_reqif_file
 from archgen.plugins.reqif.reqif_import import (
+    fold_attribute_name,
     is_requirement_id,
     make_distinct_id,
     make_requirement_id,

@@ -9,8 +9,16 @@ import pytest
 
 from archgen.bringup.start_plan import make_start_plan
 from archgen.pipeline import check_project
-from archgen.plugins.start_scripts.start_jobs import list_jobs, list_phase_needs, list_seen_signs
-from archgen.plugins.start_scripts.start_plan_view import UNPLACED, find_unread_hints, make_view, read_hint, record_step
+from archgen.plugins.start_scripts.start_plan_view import (
+    UNPLACED,
+    find_unread_hints,
+    list_jobs,
+    list_phase_needs,
+    list_seen_signs,
+    make_view,
+    read_hint,
+    record_step,
+)
 from archgen.views.generation.generation_context import GenerationContext
 
 PROJECT = """\

@@ -8,12 +8,11 @@ from contextlib import contextmanager
 from pathlib import Path
 
 from archgen.plugins.ros.launch.launch_actions import LaunchAction, LaunchedNode, join_names
-from archgen.plugins.ros.launch.launch_arguments import LaunchArguments
 from archgen.plugins.ros.launch.launch_context import LaunchContext, LaunchScope
 from archgen.plugins.ros.launch.launch_files import LaunchFiles
 from archgen.plugins.ros.launch.launch_values import OPEN, LaunchValue, UnknownValue
 from archgen.plugins.ros.launch.node_making import NodeMaker
-from archgen.plugins.ros.launch.scope_run import ScopeRun
+from archgen.plugins.ros.launch.scope_run import LaunchArguments, ScopeRun
 from archgen.plugins.ros.launch.server_parameters import ServerParameter, read_server_parameters
 
 ActionLoader = Callable[[Path, "LaunchRun"], list[LaunchAction]]

@@ -12,7 +12,7 @@ from typing import Any
 
 from archgen.plugin.importing import ForeignFileError, ForeignImport, Span, make_id, make_unique_id, title_from_id
 from archgen.plugin.ros import find_name_fault, find_node_name_fault, is_common_callback
-from archgen.plugins.ros.ros_package.message_files import make_type_name
+from archgen.plugins.ros.ros_package.package_import import make_type_name
 from archgen.plugins.ros.running_graph.dump_lines import USES, DumpLine, RunningGraph, RunningNode, read_dump_lines
 from archgen.plugins.ros.running_graph.ros_1_dump import read_ros_1_dump
 from archgen.plugins.ros.running_graph.ros_2_dump import read_ros_2_dump

@@ -1,10 +1,18 @@
-"""`archgen import workspace`: one architecture of a workspace's launch files, packages, sources and the library that ships."""
+"""`archgen import workspace`: one architecture of a workspace's launch files, packages, sources and the library that ships.
+
+The messages, services and actions that the nodes of a workspace use, from the interface files in it.
+
+What RViz shows: the displays and tools of the configuration that it is started with name its topics, as sources do of others.
+"""
 
 from __future__ import annotations
 
+import re
 from collections import Counter, defaultdict
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
+from itertools import pairwise
 from pathlib import Path
+from typing import Any
 
 from archgen.plugin import dataclass
 from archgen.plugin.importing import (
@@ -13,22 +21,161 @@ from archgen.plugin.importing import (
     Span,
     index_shipped_programs,
     make_id,
+    make_unique_id,
+    read_bounded,
     title_from_id,
 )
+from archgen.plugin.ros import is_ros_1
 from archgen.plugins.ros.launch.launch_actions import LaunchedNode
 from archgen.plugins.ros.launch.launch_files import LaunchFiles
 from archgen.plugins.ros.launch.launch_import import LaunchedFiles, find_stem, load_noted, run_launch_files
 from archgen.plugins.ros.launch.launch_run import LaunchRun
 from archgen.plugins.ros.launch.launch_slices import SliceMaker
 from archgen.plugins.ros.ros_package.import_account import ImportAccount
+from archgen.plugins.ros.ros_package.package_import import make_type_name, read_message_definition
+from archgen.plugins.ros.sources.ros_calls import FIXED_ENDPOINTS, IMAGE_TYPES
+from archgen.plugins.ros.sources.walk_values import FoundEndpoint, FoundNode
 from archgen.plugins.ros.workspace.gazebo_programs import read_gazebo_program
 from archgen.plugins.ros.workspace.loaded_controllers import find_controller_type, keep_own_remaps, list_controllers
 from archgen.plugins.ros.workspace.node_components import NodeKnowledge
-from archgen.plugins.ros.workspace.program_reading import ProgramReader
+from archgen.plugins.ros.workspace.program_reading import ProgramReader, ReadProgram
 from archgen.plugins.ros.workspace.program_sources import WorkspaceFiles
-from archgen.plugins.ros.workspace.rviz_displays import read_rviz
-from archgen.plugins.ros.workspace.used_messages import read_used_messages
 from archgen.plugins.ros.workspace.workspace_slices import make_slices
+
+_PACKAGES = frozenset({"rviz", "rviz2"})
+_FILE_OPTIONS = frozenset({"-d", "--display-config"})
+_MAX_DEPTH = 20
+_MESSAGES = {
+    **{name: f"sensor_msgs/msg/{name}" for name in ("FluidPressure", "Illuminance", "Image", "Imu", "LaserScan")},
+    **{name: f"sensor_msgs/msg/{name}" for name in ("PointCloud", "PointCloud2", "Range", "RelativeHumidity")},
+    **{name: f"geometry_msgs/msg/{name}" for name in ("AccelStamped", "PointStamped", "PoseArray", "TwistStamped")},
+    **{name: f"geometry_msgs/msg/{name}Stamped" for name in ("Polygon", "Pose", "PoseWithCovariance", "Wrench")},
+    **{name: f"nav_msgs/msg/{name}" for name in ("GridCells", "Odometry", "Path")},
+    **{name: f"visualization_msgs/msg/{name}" for name in ("Marker", "MarkerArray")},
+    "Camera": IMAGE_TYPES[0],
+    "Effort": "sensor_msgs/msg/JointState",
+    "Map": "nav_msgs/msg/OccupancyGrid",
+    "RobotModel": "std_msgs/msg/String",
+    "Temperature": "sensor_msgs/msg/Temperature",
+    "WrenchStamped": "geometry_msgs/msg/WrenchStamped",
+}
+_TOOLS = {
+    "PublishPoint": "geometry_msgs/msg/PointStamped",
+    "SetGoal": "geometry_msgs/msg/PoseStamped",
+    "SetInitialPose": "geometry_msgs/msg/PoseWithCovarianceStamped",
+}
+_TOPIC_KEYS = ("Topic", "Image Topic", "Marker Topic", "Description Topic")
+
+
+def read_rviz(node: LaunchedNode, run: LaunchRun) -> ReadProgram | None:
+    """Return what RViz reads and sends by its configuration; None for other programs, or where that is not at hand."""
+    files = [text for flag, text in pairwise(node.arguments) if flag in _FILE_OPTIONS]
+    path = run.files.find_file(files[0]) if files and node.package in _PACKAGES else None
+    said = None if path is None else run.parameter_reader.read_mapping(path)
+    manager = said.get("Visualization Manager") if said is not None else None
+    if not isinstance(manager, Mapping):
+        return None
+    found = [
+        FoundEndpoint(use, "topic", name, message, node.span)
+        for use, name, message in (*_read_displays(manager, 0), *_read_tools(manager))
+    ]
+    unique = {(each.use, each.name): each for each in found}
+    known_node = FoundNode(node.span, node.program_name or None, None, [*unique.values()])
+    return ReadProgram((known_node,), is_ros_1=node.package == "rviz")
+
+
+def _list_members(holder: Mapping[str, Any], key: str) -> Iterator[tuple[str, Mapping[str, Any]]]:
+    """Yield displays or tools, each with the last word of its class; what is switched off does nothing."""
+    members = holder.get(key)
+    for member in members if isinstance(members, list) else ():
+        if isinstance(member, Mapping) and member.get("Enabled", True) is True:
+            yield str(member.get("Class", "")).rpartition("/")[2], member
+
+
+def _read_topic(member: Mapping[str, Any]) -> str:
+    for key in _TOPIC_KEYS:
+        given = member.get(key)
+        name = given.get("Value") if isinstance(given, Mapping) else given
+        if isinstance(name, str) and name:
+            return name
+    return ""
+
+
+def _read_displays(holder: Mapping[str, Any], depth: int) -> Iterator[tuple[str, str, str]]:
+    for kind, display in _list_members(holder, "Displays"):
+        if kind == "Group" and depth < _MAX_DEPTH:
+            yield from _read_displays(display, depth + 1)
+        elif kind == "TF":
+            yield from FIXED_ENDPOINTS["TransformListener"]
+        elif (name := _read_topic(display)) and (kind != "RobotModel" or display.get("Description Source") == "Topic"):
+            is_packed = name.endswith("/compressed")
+            yield "subscribes", name, "sensor_msgs/msg/CompressedImage" if is_packed else _MESSAGES.get(kind, "")
+            if kind == "Camera":
+                folder, joint, _ = name.rpartition("/")
+                yield "subscribes", f"{folder}{joint}camera_info", IMAGE_TYPES[1]
+            elif kind == "Map":
+                updates = _read_topic({"Topic": display.get("Update Topic")}) or f"{name}_updates"
+                yield "subscribes", updates, "map_msgs/msg/OccupancyGridUpdate"
+
+
+def _read_tools(manager: Mapping[str, Any]) -> Iterator[tuple[str, str, str]]:
+    for kind, tool in _list_members(manager, "Tools"):
+        if kind in _TOOLS and (name := _read_topic(tool)):
+            yield "publishes", name, _TOOLS[kind]
+
+
+_MAX_BYTES = 1_000_000
+_FIELD_TYPE = re.compile(r"(?:([a-z][a-z0-9_]*)/)?(?:msg/)?([A-Z]\w*)")
+
+
+def read_used_messages(
+    workspace: WorkspaceFiles, knowledge: Sequence[NodeKnowledge], account: ImportAccount, distro: str
+) -> dict[str, Any]:
+    """Return the types of the messages that are used, and of those in their fields; what archgen knows of ROS is left out."""
+    pending = [
+        endpoint.message
+        for each in knowledge
+        for node in (each.program.nodes if each.program is not None else ())
+        for endpoint in node.endpoints
+    ]
+    found: dict[str, Any] = {}
+    seen: set[str] = set()
+    while pending:
+        message = pending.pop(0)
+        package = workspace.packages.get(message.partition("/")[0])
+        if message in seen or package is None:
+            continue
+        seen.add(message)
+        path = package.manifest.folder / f"{message.partition('/')[2]}.{message.split('/')[1]}"
+        shown = workspace.shown.get(path)
+        data = {} if shown is None else _read_message(path, shown, message, account, distro)
+        if len(data) > 1:
+            found[make_unique_id(make_type_name(message), found.keys())] = data
+            pending += _list_inner(data, package.manifest.name)
+    return found
+
+
+def _read_message(path: Path, shown: str, message: str, account: ImportAccount, distro: str) -> dict[str, Any]:
+    try:
+        text = read_bounded(path, _MAX_BYTES).decode("utf-8-sig", "replace")
+    except ForeignFileError as error:
+        account.add_note("file", error.message, Span.of_file(shown))
+        return {}
+    data, problems = read_message_definition(text, message, shown, is_ros_1=is_ros_1(distro), distro=distro)
+    for problem in problems:
+        account.add_note("message", problem.message, problem.span, problem.help or "")
+    account.count("message")
+    return data
+
+
+def _list_inner(data: Any, package: str) -> Iterator[str]:  # noqa: ANN401 - data of YAML
+    """Yield the messages in the fields of one."""
+    for key, value in data.items() if isinstance(data, dict) else ():
+        if isinstance(value, dict):
+            yield from _list_inner(value, package)
+        elif isinstance(value, str) and key not in {"message", "comment"} and (match := _FIELD_TYPE.match(value)):
+            yield f"{match[1] or package}/msg/{match[2]}"
+
 
 _MAX_SHOWN = 12
 _FOLDER_HELP = "give the folder in which the packages lie, `src` as a rule"

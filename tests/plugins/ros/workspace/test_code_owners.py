@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 from archgen.plugins.ros.ros_package.import_account import ImportAccount
-from archgen.plugins.ros.workspace.code_owners import CodeOwners
+from archgen.plugins.ros.workspace.workspace_slices import CodeOwners
 
 OWNERS = """\
 # Who looks at what.
