@@ -325,6 +325,18 @@ def test_an_element_of_a_library_is_edited_there(tmp_path: Path) -> None:
     assert added_words(rename(version, "b.eye", "ear"))[0].startswith("b: {components: {ear: {is: shared.eye}")
 
 
+def test_a_library_is_renamed_whatever_its_types_hold(tmp_path: Path) -> None:
+    (tmp_path / "shared").mkdir()
+    types = "motor: {inputs: {target: {type: T}}, outputs: {state: {type: T}}}\n"
+    hand = "hand: {inputs: {grip: {type: T}}, outputs: {state: {from: thumb.state}}, components: {thumb: {is: motor, inputs: {target: self.grip}}}}\n"
+    (tmp_path / "shared" / "parts.yaml").write_text(f"component_types:\n  {types}  {hand}", encoding="utf-8")
+    text = SHORT + "libraries: {shared: shared}\n"
+    version = read(tmp_path, text.replace("one_b: {", "hand: {is: shared.hand}, one_b: {"))
+    renamed = rename(version, "library shared", "parts")
+    assert [each for each in added_words(renamed) if "parts" in each] == added_words(renamed)
+    assert any("hand: {is: parts.hand}" in each for each in added_words(renamed))
+
+
 def test_a_file_that_is_read_by_the_id_of_a_partner_is_named_first(tmp_path: Path) -> None:
     (tmp_path / "review").mkdir()
     (tmp_path / "review" / "lab.yaml").write_text(
