@@ -35,6 +35,7 @@ MADE = {
     "archgen/emit/workspace/own_code.py:_holds_phrase": "a name between bounds of words",
     "archgen/link/report_chapters.py:_locate_picture": "a path behind one sign",
     "archgen/plugins/ros/workspace/node_components.py:_leave_out_filed": "names of parameters, with what stands for one in them",
+    "archgen/plugins/ros/workspace/node_components.py:_note_other_topics": "the same",
     "archgen/plugins/tables/table_files.py:_add_rows": "one set of characters, taken for good",
     "archgen/project/source_reading.py:_looks_like_slice": "known words at the beginning of a line",
     "archgen/schema/key_wording.py:diagnose_wrong_key": SCHEMA,

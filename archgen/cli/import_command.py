@@ -236,7 +236,7 @@ def _import_slices(  # noqa: PLR0913, PLR0917 - what, where and how
         for diagnostic in refusal.diagnostics:
             _print_problem(str(diagnostic.span), diagnostic.message, diagnostic.help or "")
         raise click.ClickException(make_visible(refusal.message)) from None
-    _print_account(imported, plan, form)
+    _print_account(imported, plan, form, is_written=mode == "write")
     if mode == "write":
         # A recording says what was once: it does not change, the next one has another name.
         _write_plan(plan, [] if import_format.has_dated_files else files, quiet=form == "json")
@@ -264,7 +264,7 @@ def _print_problem(place: str, message: str, help_line: str) -> None:
         click.echo(make_visible(f"  = help: {help_line}"), err=True)
 
 
-def _print_account(imported: ForeignImport, plan: ImportPlan | None, form: str) -> None:
+def _print_account(imported: ForeignImport, plan: ImportPlan | None, form: str, *, is_written: bool = False) -> None:
     """Print what was taken, and each construct that was not, with its place."""
     if form == "json":
         click.echo(json.dumps(_make_record(imported, plan), indent=2, ensure_ascii=True))
@@ -275,7 +275,7 @@ def _print_account(imported: ForeignImport, plan: ImportPlan | None, form: str) 
         click.echo(make_visible(f"  {note.fate}: {note.span}: {note.kind}: {note.message}"))
         if note.help_line:
             click.echo(make_visible(f"    = help: {note.help_line}"))
-    for line in _summarise_slices(plan) if plan else ():
+    for line in _summarise_slices(plan, is_written=is_written) if plan else ():
         click.echo(make_visible(line))
 
 
@@ -316,10 +316,11 @@ def _make_note_record(note: ImportNote) -> dict[str, Any]:
     }
 
 
-def _summarise_slices(plan: ImportPlan) -> Iterator[str]:
+def _summarise_slices(plan: ImportPlan, *, is_written: bool) -> Iterator[str]:
+    renewed = "brought up to date" if is_written else "would be brought up to date"
     for planned in plan.slices:
         if not planned.is_new:
-            yield f"{planned.file}: {'brought up to date' if planned.is_changed else 'as before'}"
+            yield f"{planned.file}: {renewed if planned.is_changed else 'as before'}"
             yield from (f"  {change.describe()}" for change in planned.changes)
             if not planned.has_record:
                 yield "  what the last import said is not known: nothing is taken away, and what stands there stays"

@@ -11,6 +11,7 @@ import click
 
 from archgen.cli import command_support, shared_options
 from archgen.diagnostics.diagnostic import Severity
+from archgen.diagnostics.safe_text import make_visible
 from archgen.products.output_options import OutputOptions
 
 if TYPE_CHECKING:
@@ -127,5 +128,8 @@ def _start_site(live_site: LiveSite) -> None:
 
 def _print_state(live_site: LiveSite) -> None:
     """Print what is wrong in the files, or that nothing is, to the error stream."""
-    if live_site.checked_project is not None:
+    failures = [note["message"] for note in live_site.status.errors if not (note["place"] or note["rule"])]
+    for message in failures:
+        click.echo(make_visible(f"error: {message}"), err=True)
+    if live_site.checked_project is not None and not failures:
         command_support.print_findings_above(live_site.checked_project, lowest_severity=Severity.ERROR)

@@ -211,7 +211,7 @@ class EndpointComparer:
         return Diagnostic(
             "not-running",
             f"{message} {self._robot.where}",
-            endpoint.at,
+            first_written_span(endpoint.at, node.at),
             severity,
             (Label(observed_node.at, "this is the node"),),
             help_line,
@@ -256,7 +256,7 @@ class EndpointComparer:
         new_text = f"write `qos: {{{policy}: {observed.strip('`')}}}`"
         help_line = f"{new_text if seen.qos[policy] is not None else f'take `{policy}` out'}, or change the program"
         labels = (Label(seen.at, f"it {_VERBS_OF_ONE[endpoint.use]} it like this"),)
-        place = first_written_span(endpoint.qos.at, endpoint.at)
+        place = first_written_span(endpoint.qos.at, endpoint.at, self._architecture.nodes[endpoint.node].at)
         is_latched = (policy, endpoint.use, endpoint.qos.durability) == ("durability", "publishes", "transient_local")
         rule = "not-latched" if is_latched else "other-qos"
         return Diagnostic(rule, message, place, None, labels, help_line, endpoint.port or endpoint.node)
@@ -276,7 +276,8 @@ class EndpointComparer:
                 )
                 labels = (Label(seen.at, "seen here"), Label(other.observed.at, "the other end"))
                 help_line = f"{conflict.remedy}; the design writes no `qos` here"
-                place, element = endpoint.at, endpoint.port or endpoint.node
+                place = first_written_span(endpoint.at, self._architecture.nodes[endpoint.node].at)
+                element = endpoint.port or endpoint.node
                 yield Diagnostic("other-qos", message, place, None, labels, help_line, element)
                 return
 
@@ -330,7 +331,8 @@ def _report_other_name(node: Node, endpoint: Endpoint, seen: ObservedEndpoint, w
     message += ": its remap does not count there" if is_own else ""
     help_line = f"write `{_write_name(seen)}` here, or change the name there"
     labels = (Label(seen.at, "seen here"),)
-    return Diagnostic("other-name", message, endpoint.at, None, labels, help_line, endpoint.port or node.id)
+    place = first_written_span(endpoint.at, node.at)
+    return Diagnostic("other-name", message, place, None, labels, help_line, endpoint.port or node.id)
 
 
 def _write_name(seen: ObservedEndpoint) -> str:
@@ -346,7 +348,7 @@ def compare_types(node: Node, pair: EndpointPair, where: str) -> Iterator[Diagno
         f"`{endpoint.name}`, which `{node.full_name}` {_VERBS_OF_ONE[endpoint.use]}, has the type `{seen.message}` {where}, "
         f"and `{endpoint.message}` in the design"
     )
-    place = first_written_span(endpoint.message_at, endpoint.at)
+    place = first_written_span(endpoint.message_at, endpoint.at, node.at)
     labels = (Label(seen.at, "seen here"),)
     help_line = f"write `{seen.message}` as the type, or change the program"
     yield Diagnostic("other-type", message, place, None, labels, help_line, endpoint.port or node.id)

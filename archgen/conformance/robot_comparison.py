@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections import defaultdict
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from types import MappingProxyType
 
 from archgen.conformance.endpoint_comparison import EndpointComparer, EndpointPair
@@ -14,8 +14,8 @@ from archgen.conformance.seen_record import EndState, name_end
 from archgen.derivation.wire.running_state import RunningStates, has_unknown_name, is_filled_in
 from archgen.diagnostics.diagnostic import Diagnostic, Label, Severity
 from archgen.diagnostics.rule_options import OptionValues
-from archgen.diagnostics.source_span import Span, first_written_span
-from archgen.frozen import dataclass, field
+from archgen.diagnostics.source_span import NO_SPAN, Span, first_written_span
+from archgen.frozen import dataclass, field, replace
 from archgen.model.architecture import Architecture
 from archgen.model.node import Endpoint, Node
 from archgen.model.parameter_values import (
@@ -32,6 +32,7 @@ IGNORED_NODES = (
     *("*/transform_listener_impl_*", "/archgen_recorder"),
 )
 """Nodes that are no part of a robot: tools that look at it, and what libraries make for themselves. `*` stands for any characters."""
+_OF_ONE_END = frozenset({"other-name", "other-type", "other-qos"})
 _ALIKE_SHARE = 0.8
 _FEWEST_USES = 2
 """A node is known by what it uses, if that is the same to this share and it uses so much."""
@@ -160,7 +161,24 @@ class _Comparer:
         result.findings += self._endpoints.compare_qos(self._pairs)
         result.ends |= {name: "differs" for name in result.ends if name in self._endpoints.differing}
         result.remedies += self._endpoints.remedies
+        result.findings[:] = self._name_other_instances(result.findings)
         return result
+
+    def _name_other_instances(self, findings: Iterable[Diagnostic]) -> Iterator[Diagnostic]:
+        """Yield findings; where a line of a component type stands for several nodes, what to write for one goes to its instance."""
+        nodes: dict[Span, dict[str, None]] = defaultdict(dict)
+        for endpoint in self._architecture.endpoints:
+            for place in {endpoint.at, endpoint.message_at} - {NO_SPAN}:
+                nodes[place][endpoint.node] = None
+        components = {endpoint.port: endpoint.component for endpoint in self._architecture.endpoints}
+        for finding in findings:
+            shared = nodes.get(finding.span, {})
+            component = components.get(finding.element)
+            if finding.rule in _OF_ONE_END and len(shared) > 1 and component and finding.help:
+                help_line = f"{finding.help}; this line is for {len(shared)} nodes: what is so of one alone goes to its instance `{component}`"
+                yield replace(finding, help=help_line)
+            else:
+                yield finding
 
     def _is_expected(self, node: Node) -> bool:
         is_elsewhere = bool(self._part.hosts) and node.host not in self._part.hosts

@@ -64,12 +64,21 @@ class PathGuesser:
                 if fitting_kinds
                 else ()
             )
-            guess = self.guess_name(dotted_path, candidates)
+            guess = self._guess_last_part(dotted_path, candidates)
         while guess is None and "." in dotted_path:
             dotted_path = dotted_path.partition(".")[2]
             moved_element = self.names.resolve_path(dotted_path, kinds).unique_element
             guess = moved_element.id if moved_element else None
         return guess
+
+    def _guess_last_part(self, dotted_path: str, candidates: Collection[str]) -> str | None:
+        """Return the nearest path; what has the same leading parts is near by its last one alone: `eye.debug` is no `eye.apples`."""
+        start = dotted_path[: dotted_path.rfind(".") + 1]
+        siblings = {path for path in candidates if start and path.startswith(start)}
+        last_part = (
+            self.guess_name(dotted_path[len(start) :], {path[len(start) :] for path in siblings}) if siblings else None
+        )
+        return start + last_part if last_part else self.guess_name(dotted_path, set(candidates) - siblings)
 
     def _list_candidate_paths(self, kind: str, length: int) -> tuple[str, ...]:
         key = (kind, length)

@@ -6,7 +6,7 @@ A mark is put where the cursor is, and the text is read with it: so the place is
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 
 from lsprotocol import types
 
@@ -35,7 +35,7 @@ type alone, an output of a composed component one of its own outputs.
 _PORT_TABLES = {"publishes": "outputs", "serves": "outputs", "subscribes": "inputs", "calls": "inputs"} | {
     name: name for name in ("inputs", "outputs")
 }
-"""The keys of nodes below which ports of its components stand, and where these are declared."""
+"""The keys of nodes, and of `timing`, below which ports of components stand, and where these are declared."""
 
 
 class _Place(NamedTuple):
@@ -154,19 +154,42 @@ def _list_keys(project: EditedProject, place: _Place, end: str) -> Iterator[Offe
 
 def _list_ids(project: EditedProject, place: _Place) -> Sequence[OfferedName]:
     """Return the ids that may be keys of a place: elements that another file declares (of libraries: none), ports of a node's components."""
-    architecture, section = project.checked.architecture, place.part
+    section = place.part
     if section in SECTION_KINDS:
         return project.offered_names.get(section, ())
     if section == "rules":
         return [OfferedName(name, summarise_rule(rule)) for name, rule in index_all_rules().items() if not rule.fixed]
-    node = architecture.nodes.get(str(place.path[1])) if len(place.path) > 1 and place.path[0] == "nodes" else None
     table = _PORT_TABLES.get(str(place.path[-1])) if place.path else None
-    components = [architecture.components[each] for each in node.implements] if node and table else []
-    return [
-        OfferedName(port.name, port.type or "")
-        for component in components
-        for port in getattr(component, str(table)).values()
-    ]
+    of_node = bool(place.path) and place.path[0] == "nodes"
+    return _list_ports(project, place, table) if table and (of_node or "timing" in place.path) else []
+
+
+def _list_ports(project: EditedProject, place: _Place, table: str) -> list[OfferedName]:
+    """Return the ports of the component that a place stands in, or of those that its node implements."""
+    architecture = project.checked.architecture
+    components: Iterable[str] = (_find_component(place),)
+    if len(place.path) > 1 and place.path[0] == "nodes":
+        node = architecture.nodes.get(str(place.path[1]))
+        components = node.implements if node else ()
+    elif place.path[0] == "component_types":
+        scope = _find_scope(project, place)
+        components = (scope,) if "components" not in place.path else ()
+    found = (architecture.components.get(each) or architecture.shells.get(each) for each in components)
+    ports = {port.name: port.type or "" for each in found if each for port in getattr(each, table).values()}
+    return [OfferedName(*each) for each in ports.items()]
+
+
+def _find_component(place: _Place) -> str:
+    """Return the id of the component that a place stands in; empty where it stands in none."""
+    steps = [str(step) for step in place.path]
+    if steps[:1] == ["variants"]:
+        steps = steps[3:]
+    parts = steps[1:2] if steps[:1] == ["groups"] else []
+    rest = steps[2:]
+    while len(rest) > 1 and rest[0] == "components":
+        parts.append(rest[1])
+        rest = rest[2:]
+    return ".".join(parts) if len(parts) > 1 else ""
 
 
 def _list_values(project: EditedProject, place: _Place) -> Iterator[Offer]:
@@ -185,10 +208,13 @@ def _list_values(project: EditedProject, place: _Place) -> Iterator[Offer]:
     for word in dict.fromkeys(words):
         yield Offer(word, word, place.column, types.CompletionItemKind.EnumMember)
     kinds = _SCOPED_OFFERS.get(place.part) or OFFERS.get(place.part, ())
+    if kinds == ("component_type_names",) and "<" in place.typed:
+        kinds = ("types",)
     if kinds == ("selectors",):
         kinds = ("selectors", "implemented")  # a schema would become too large with them
     if kinds:
-        offered = [each for kind in kinds for each in project.offered_names[kind]]
+        offered = _list_ports(project, place, "inputs") if kinds == ("inputs",) else []
+        offered = offered or [each for kind in kinds for each in project.offered_names[kind]]
         last_word = _LAST_WORDS.get(kinds[0])
         column = place.column + (last_word.search(place.typed).start() if last_word else 0)  # type: ignore[union-attr]
         for each in _sort_sources(project, place, offered) if kinds == ("sources",) else offered:
@@ -196,7 +222,7 @@ def _list_values(project: EditedProject, place: _Place) -> Iterator[Offer]:
 
 
 def _sort_sources(project: EditedProject, place: _Place, offered: Sequence[OfferedName]) -> list[OfferedName]:
-    """Return what an input may read: what fits its type first, then what stands around it, then the shorter form."""
+    """Return what an input may read: what fits its type first, then what stands around it, then the shorter form; itself last."""
     outputs = elements_by_kind(project.checked.architecture)["output"].values()
     scope = _find_scope(project, place)
     own = [each for each in outputs if scope and each.id.startswith(f"{scope}.")]
@@ -208,11 +234,14 @@ def _sort_sources(project: EditedProject, place: _Place, offered: Sequence[Offer
     ids = {name: each for each in (*outputs, *own) for name in (each.id, each.id.partition(".")[2])}
     ids |= {each.id[len(scope) + 1 :]: each for each in own}
 
-    def rate(each: OfferedName) -> tuple[bool, bool, int, str]:
+    itself = _find_component(place)
+
+    def rate(each: OfferedName) -> tuple[bool, bool, bool, int, str]:
         output = ids.get(each.name)
+        is_itself = output is not None and bool(itself) and output.id.startswith(f"{itself}.")
         fits = output is not None and output.type is not None and output.type == place.wanted_type
         is_own = output is not None and bool(scope) and output.id.startswith(f"{scope}.")
-        return not fits, not is_own, each.name.count("."), each.name
+        return is_itself, not fits, not is_own, each.name.count("."), each.name
 
     return sorted(names.values(), key=rate)
 
@@ -225,7 +254,7 @@ def _find_scope(project: EditedProject, place: _Place) -> str:
     if place.path[0] == "groups":
         return name
     architecture = project.checked.architecture
-    shells = (each for each in architecture.shells.values() if each.type_name)
+    instances = (each for each in (*architecture.shells.values(), *architecture.components.values()) if each.type_name)
     return next(
-        (each.id for each in shells if name in {base.id for base in architecture.list_bases(each.type_name)}), ""
+        (each.id for each in instances if name in {base.id for base in architecture.list_bases(each.type_name)}), ""
     )

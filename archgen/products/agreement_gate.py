@@ -77,7 +77,7 @@ class _AgreementPair:
     """The look-ups of versions that were asked for, which all agreements share."""
 
     def find_breaks(self) -> Iterator[Change]:
-        """Yield a change for each thing by which the second version leaves what was signed."""
+        """Yield a change for each thing by which the second version departs from what was signed."""
         old, new = self.old.signed, self.new.signed
         if not (self.old.binding_signature or new):
             return
@@ -180,12 +180,12 @@ class _AgreementPair:
     def _tell_departures(self, signed: Signature, left: Departures, variant: str) -> Change:
         count = sum(len(versions) for versions in signed.versions.values())
         text = (
-            f"of the agreement {self._name(signed)} {len(left)} of {count} interfaces would be left"
+            f"of the agreement {self._name(signed)} {len(left)} of {count} interfaces would not be as signed"
             f"{f', in the variant `{variant}`' if variant else ''}: mend it, or let both sign again (`archgen sign "
             f"{' '.join(self.new.pair)}`)"
         )
         told = keep_first([f"{key} ({'; '.join(lines)})" for key, lines in left.items()], _MAX_TOLD)
-        return self._make_change(("versions",), text, f"leaves what was signed of {join_words(told)}")
+        return self._make_change(("versions",), text, f"changes what was signed of {join_words(told)}")
 
     def _name(self, signed: Signature | None) -> str:
         return f"`{self.new.id}` of {signed.day}" if signed and signed.day else f"`{self.new.id}`"

@@ -400,3 +400,44 @@ def test_a_large_graph_is_quick(tmp_path: Path) -> None:
     assert time.process_time() - begin < 1
     assert report.comparisons[0].seen_nodes == 200
     assert report.reported.findings == ()
+
+
+LEGS = """\
+archgen: 1
+ros: {distro: jazzy}
+component_types:
+  leg:
+    inputs: {goal: std_msgs/msg/Float64}
+    outputs: {state: std_msgs/msg/Float64}
+    node: {package: legs, executable: leg, publishes: {state: state}, subscribes: {goal: goal}}
+groups:
+  body:
+    components:
+      left: {is: leg, inputs: {goal: gait.l}, node: {namespace: /left}}
+      right: {is: leg, inputs: {goal: gait.r}, node: {namespace: /right}}
+      gait: {outputs: {l: std_msgs/msg/Float64, r: std_msgs/msg/Float64}, inputs: {states: [left.state, right.state]}}
+nodes:
+  gait: {implements: gait, publishes: {l: /left/goal, r: /right/goal}}
+"""
+
+
+def test_what_is_so_of_one_instance_is_not_to_be_written_at_the_type_of_all(tmp_path: Path) -> None:
+    (tmp_path / "archgen.yaml").write_text(LEGS, encoding="utf-8")
+    project = check_project(tmp_path)
+    graph = print_graph(project.architecture)
+    before, start, after = re.sub(r"\$ ros2 topic info (?:.*\n)(?:[^$].*\n)+", "", graph).partition(
+        "$ ros2 node info /right"
+    )
+    other_type = (
+        before + start + after.replace("/right/goal: std_msgs/msg/Float64", "/right/goal: std_msgs/msg/Float32")
+    )
+    for changed, text in (
+        (graph.replace("/right/state", "/right/stat"), "write `topic: /right/stat` here, or change the name there"),
+        (other_type, "write `std_msgs/msg/Float32` as the type, or change the program"),
+    ):
+        findings = compare_with_graph(project, changed).reported.findings
+        (of_leg,) = [each for each in findings if (each.element or "").startswith("body.right")]
+        shared = "; this line is for 2 nodes: what is so of one alone goes to its instance `body.right`"
+        assert of_leg.help == text + shared
+        # An end that nobody wrote is told at its node, not in what was seen.
+        assert {each.span.file for each in findings} == {"archgen.yaml"}

@@ -26,6 +26,8 @@ def make_guesser() -> PathGuesser:
         ("camra.image", ("output",), "camera.image"),
         ("camera.imge", ("output",), "camera.image"),
         ("lidr", ("component", "output"), "lidar"),
+        # The component is right: its output is near by its own letters, or none is meant.
+        ("sensing.camera.pages", ("output",), None),
         # Moved to another group: what is left of the path still names it.
         ("acting.arm.lidar.scan", ("output",), "sensing.lidar.scan"),
         ("zzz", ("component",), None),

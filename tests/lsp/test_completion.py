@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+from pathlib import Path
 from typing import Any
 
 import pytest
 
+from tests.lsp.client import Client
 from tests.lsp.conftest import Workspace
 
 STATE = "groups/robot_state.yaml"
@@ -87,6 +89,62 @@ def test_what_fits_is_offered(robot: Workspace, row: tuple[str, str, str, str, i
     assert end == cursor
     assert label.casefold().startswith(line[start:end].casefold().strip()) or line[start:end].strip() in label
     assert len(labels) == len(set(labels))
+
+
+PARTNERS = """archgen: 1
+groups:
+  see:
+    components:
+      eye: {role: source, outputs: {image: Image}}
+      finder:
+        inputs: {picture: eye.image, place: {from: wheels.odometry}}
+        outputs: {apples: Apples, view: Image}
+        timing: {trigger: [picture]}
+      smooth: {is: smoother<Apples>, inputs: {raw: finder.apples}}
+      wheels: {outputs: {odometry: Odometry}, inputs: {speed: {external: a stick}}}
+component_types:
+  smoother: {generic: [T], inputs: {raw: T}, outputs: {clean: T}, timing: {trigger: any}}
+nodes:
+  finder: {implements: finder, subscribes: {place: {qos: default}}}
+types: {Apples: std_msgs/msg/String, Image: sensor_msgs/msg/Image, Odometry: nav_msgs/msg/Odometry}
+"""
+OWN_ROWS = [
+    ("trigger: [picture]", "trigger: [|]", ["any", "all", "picture", "place"]),
+    ("trigger: any", "trigger: |", ["any", "all", "raw"]),
+    ("trigger: [picture]", "inputs: {|}", ["picture", "place"]),
+    ("trigger: [picture]", "outputs: {|}", ["apples", "view"]),
+    ("smoother<Apples>", "smoother<|>", ["Apples", "Image", "Odometry"]),
+    ("smoother<Apples>", "smoother<App|", ["Apples", "Image", "Odometry"]),
+]
+
+
+@pytest.mark.parametrize(("old", "new", "labels"), OWN_ROWS)
+def test_ports_are_those_of_what_stands_around_and_parameters_are_types(
+    tmp_path: Path, old: str, new: str, labels: list[str]
+) -> None:
+    items = list_items_alone(tmp_path, PARTNERS, old, new)
+    assert [item["label"] for item in items][: len(labels)] == labels
+    assert not {"speed", "smoother"} & {item["label"] for item in items}
+
+
+def test_outputs_of_the_reader_itself_come_last(tmp_path: Path) -> None:
+    items = list_items_alone(tmp_path, PARTNERS, "picture: eye.image", "picture: |")
+    labels = [item["label"] for item in sorted(items, key=lambda item: item["sortText"])]
+    assert labels[0] == "eye.image"
+    assert [each for each in labels if "finder." in each] == labels[-4:]
+
+
+def list_items_alone(folder: Path, text: str, old: str, new: str) -> list[dict[str, Any]]:
+    (folder / "archgen.yaml").write_text(text, encoding="utf-8")
+    marked = text.replace(old, new)
+    before = marked[: marked.index("|")]
+    with Client(folder) as client:
+        client.open("archgen.yaml")
+        client.wait_for("archgen.yaml")
+        client.write("archgen.yaml", marked.replace("|", "", 1))
+        column = len(before) - before.rfind("\n")
+        answer = client.at("completion", "archgen.yaml", before.count("\n") + 1, column)
+    return list(answer["items"] if isinstance(answer, dict) else answer)
 
 
 def test_keys_are_explained_and_end_in_a_colon(robot: Workspace) -> None:

@@ -65,7 +65,7 @@ def edit(robot: Path, old: str, new: str, file: str = "archgen.yaml") -> None:
 
 
 def judge(robot: Path, base: str = "base") -> list[str]:
-    """Give what of an agreement would be left since `base`: severity, place and words."""
+    """Give what of an agreement would not be as signed since `base`: severity, place and words."""
     versions = read_versions(base, None, robot)
     comparison = compare_named_versions(*versions)
     found = [each for each in find_breaks(comparison, versions[1].checked_project) if "(agreement" in each.message]
@@ -81,7 +81,7 @@ def test_a_change_leaves_what_was_signed_until_both_sign_again(robot: Path, sign
     assert judge(robot) == [
         (
             f"error {FILE}:13 breaks Alpha and Beta (agreement): of the agreement `a-b` of 2026-03-01 1 of 3 interfaces "
-            "would be left: mend it, or let both sign again (`archgen sign a b`); this leaves what was signed of "
+            "would not be as signed: mend it, or let both sign again (`archgen sign a b`); this changes what was signed of "
             "`sense.lidar.scan` (weaker: Rate (promised) was signed as 10 Hz · 100 ms, and is 8 Hz · 125 ms)"
         )
     ]
@@ -142,7 +142,7 @@ def test_words_are_signed_too(run: Run, robot: Path, sign: Sign) -> None:  # noq
     git(robot, "branch", "base")
     edit(robot, "30 days", "3 days", FILE)
     (finding,) = judge(robot)
-    assert "leaves what was signed of the terms (Notice of changes)" in finding
+    assert "changes what was signed of the terms (Notice of changes)" in finding
     ran = run("interfaces", robot, "--between", "a", "b", "--signed", "signed/a-b/2026-03-01")
     assert ran.status == 1
     assert "  terms: Notice of changes is not as it was signed" in ran.err.splitlines()
@@ -155,7 +155,7 @@ def test_a_variant_is_held_as_well(robot: Path, sign: Sign) -> None:
     git(robot, "branch", "base")
     edit(robot, "rate: 5 Hz", "rate: 4 Hz")
     (finding,) = judge(robot)
-    assert "would be left, in the variant `slow`" in finding
+    assert "would not be as signed, in the variant `slow`" in finding
     assert "5 Hz · 200 ms, and is 4 Hz" in finding
 
 
@@ -268,7 +268,7 @@ def test_without_the_signed_commit_the_versions_count(robot: Path, sign: Sign) -
     git(robot, "branch", "base")
     edit(robot, "rate: 10 Hz", "rate: 8 Hz")
     (finding,) = judge(robot)
-    assert "leaves what was signed of `sense.lidar.scan` (version V, V was signed)" in finding
+    assert "changes what was signed of `sense.lidar.scan` (version V, V was signed)" in finding
 
 
 def test_a_withdrawal_needs_the_word_of_both(robot: Path, sign: Sign) -> None:

@@ -72,7 +72,7 @@ ID = "an id is lower-case words joined by `_`, such as `object_recognition`, and
         ("hosts: {h: {cores: 123456789012345678901234567890}}", "1:20 wrong-value: `cores` cannot be `123456789012345678901234567890` | it is at most 1000000"),
         ("rules: {unread-output: warn}", "1:24 wrong-value: `unread-output` cannot be `warn` | it is one of `note`, `off`, `warning`, `error`"),
         ("archgen: 2", "1:10 wrong-value: this archgen reads version 1 of the language, not `2` | write `1`"),
-        ("groups: {g: {urls: {a: 'javascript:x'}}}", "1:24 wrong-value: `a` cannot be `javascript:x` | an address begins with `https://`, `http://` or `mailto:` and holds no blank; a file of the repository is its path from the project's folder, with `/` and without blanks"),
+        ("groups: {g: {urls: {a: 'javascript:x'}}}", "1:24 wrong-value: `a` cannot be `javascript:x` | an address begins with `https://`, `http://` or `mailto:`, and holds no blank, `<`, `>` or `\"` (write `%3C`, `%3E`, `%22`); a file of the repository is its path from the project's folder, with `/` and without blanks"),
         ("generate: [ros2_cpp, start]", "1:1 wrong-type: `generate` is a list, but must be a mapping | its keys are `into`, `backends`: write `{backends: {ros2_cpp: {}, start: {}}}`"),
         ("generate: ros2_cpp", "1:11 wrong-type: `generate` is `ros2_cpp`, but must be a mapping | its keys are `into`, `backends`: write `{backends: {ros2_cpp: {}}}`"),
         ("generate: {backends: [ros2_cpp, {start: {image: x}}]}", "1:12 wrong-type: `backends` is a list, but must be a mapping | `backends` is keyed by id: write `{ros2_cpp: {}, start: {...}}` instead of a list"),
@@ -92,7 +92,7 @@ def test_keys_that_look_like_numbers() -> None:
         "1:36 wrong-type: `cores` is `x`, but must be a whole number | write a number without unit",
         "1:40 wrong-type: `7` is a list, but must be text or a mapping | its keys are `title`, `cores`, `scheduling`, `description`, `address`, `environment`, `tags`, `properties`, `hints`",
         f"1:40 wrong-value: `7` cannot be an id | {ID}",
-        "2:24 wrong-value: `1` cannot be `f:x` | an address begins with `https://`, `http://` or `mailto:` and holds no blank; a file of the repository is its path from the project's folder, with `/` and without blanks",
+        "2:24 wrong-value: `1` cannot be `f:x` | an address begins with `https://`, `http://` or `mailto:`, and holds no blank, `<`, `>` or `\"` (write `%3C`, `%3E`, `%22`); a file of the repository is its path from the project's folder, with `/` and without blanks",
         "2:32 unknown-key: a functional group has no key `0` | its keys are `title`, `description`, `owner`, `tags`, `urls`, `layout`, `components`, `autoconnect`, `properties`, `hints`",
     ]
 

@@ -36,6 +36,8 @@ def test_it_tells_its_address_opens_it_and_prints_errors_as_check_does(
         assert choose_places()
         (robot / "archgen.yaml").write_text(ROBOT.replace("inputs:", "imputs:"))
         on_change()
+        (robot / "archgen.yaml").unlink()
+        on_change()
         assert seen.wait(120)
         raise KeyboardInterrupt
 
@@ -49,7 +51,8 @@ def test_it_tells_its_address_opens_it_and_prints_errors_as_check_does(
     assert address
     assert opened == [address[1]]
     assert "did you mean `inputs`?" in result.stderr
-    assert result.stderr.endswith("stopped\n")
+    assert result.stderr.count("did you mean `inputs`?") == 1
+    assert re.search(r"error: .*archgen\.yaml.*\n\nstopped\n\Z", result.stderr), result.stderr
     assert not (robot / "archgen-out").exists()
 
 

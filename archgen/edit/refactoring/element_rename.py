@@ -83,7 +83,17 @@ def plan_rename(version: JudgedVersion, element: Element, new_name: str, kept: K
 
 
 def _refuse_partner_files(version: JudgedVersion, partner: str, new_name: str) -> None:
-    """Raise EditRefusedError for a file that is read by the id of a partner: it would be read no more."""
+    """Raise EditRefusedError for what is found by the id of a partner, or was signed under it: it would be found no more."""
+    for agreement in version.project.architecture.agreements.values():
+        if partner in agreement.pair:
+            message = f"{agreement.at} is an agreement under the ids of both partners"
+            new_id = "-".join(new_name if each == partner else each for each in agreement.pair)
+            help_line = (
+                "what was signed names them: take the agreement away, rename, and let both sign again"
+                if agreement.signed
+                else f"take it away, rename, and write it again as `{new_id}`"
+            )
+            raise EditRefusedError(message, help_line)
     for file in version.project.yaml_files:
         folder, _, stem = file.removesuffix(".yaml").rpartition("/")
         words = stem.split("-")

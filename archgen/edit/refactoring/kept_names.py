@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from itertools import product
 
 from archgen.checking.reference_index import Element
 from archgen.diagnostics.source_span import Span
@@ -139,7 +140,9 @@ def _insert(
     """Return the edit of a file with a key written below an element. Raise EditRefusedError."""
     kind, element_id = insertion.element
     by_hand = f"write `{insertion.key}: {insertion.value}` at the {kind.replace('_', ' ')} first, then rename"
-    for name in edited.index.list_names(kind, element_id):
+    names = edited.index.list_names(kind, element_id)
+    # What a variant says counts there alone: the project itself goes before.
+    for in_variant, name in product((False, True), names):
         file = name.span.file
         known = edits_by_file.get(file)
         old_content, text = (
@@ -149,7 +152,7 @@ def _insert(
         plain_text = text.removeprefix(mark)
         document, _ = yaml_parser.parse_yaml(file, plain_text)
         path = _find_path(document.root, name.span) if document and name.is_declaration and name.is_exact else None
-        if path is None:
+        if path is None or (path[0] == "variants") != in_variant:
             continue
         *outer, last = (*path, *insertion.path, insertion.key)
         element = NewElement(last, insertion.value)

@@ -79,8 +79,11 @@ def list_unedited(version: JudgedVersion, renamed: RenamedIds) -> Iterator[str]:
     if lines:
         more = f" and {len(lines) - _MOST_PROGRAM_LINES} more" if len(lines) > _MOST_PROGRAM_LINES else ""
         yield f"programs are not edited, and hold the word: {', '.join(lines[:_MOST_PROGRAM_LINES])}{more}"
+    is_type = any(kind == "type" for kind, _ in renamed.pairs)
     for each in version.project.architecture.agreements.values():
-        if each.signed:
+        versions = each.signed.versions if each.signed else {}
+        named = [("output", path) for paths in versions.values() for path in paths]
+        if each.signed and (is_type or any(renamed.map_element(element) != element for element in named)):
             command = (
                 f"archgen interfaces --between {' '.join(each.pair)} --signed {each.signed.tag or each.signed.revision}"
             )

@@ -30,9 +30,10 @@ class RenamedIds:
                 if stood is not None:
                     return kind, stood[1] + element_id[len(outer_id) :]
             # What stands inside of a type begins with the type's name between brackets.
-            stood = self.pairs.get(("component_type", outer_id[1:-1])) if outer_id.startswith("<") else None
-            if stood is not None:
-                return kind, f"<{stood[1]}>{element_id[len(outer_id) :]}"
+            type_name = outer_id[1:-1] if outer_id[0] + outer_id[-1] == "<>" else ""
+            new_type = self.map_id("component_type", type_name) if type_name else ""
+            if new_type != type_name:
+                return kind, f"<{new_type}>{element_id[len(outer_id) :]}"
         return element
 
     def map_id(self, kind: str, element_id: str) -> str:

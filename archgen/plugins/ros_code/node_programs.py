@@ -9,7 +9,8 @@ from __future__ import annotations
 import re
 from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 
-from archgen.plugin.findings import NO_SPAN, Diagnostic, Label, Span, first_written_span
+from archgen.plugin import replace
+from archgen.plugin.findings import NO_SPAN, Diagnostic, Label, Severity, Span, first_written_span
 from archgen.plugin.generating import (
     NOT_GENERATED,
     GeneratedView,
@@ -65,7 +66,10 @@ def make_view(context: GenerationContext, ros: int = 2) -> GeneratedView:
     is_cpp = bool(context.options.get("with_cpp"))
     all_programs = _find_programs(context, language)
     program_names = ProgramNames(context.architecture, ros)
-    findings: list[Diagnostic] = list(_find_mixed_packages(context, all_programs, language))
+    findings: list[Diagnostic] = [
+        *_find_mixed_packages(context, all_programs, language),
+        *_tell_nothing(context, all_programs, language),
+    ]
     programs, unusable = drop_unusable(all_programs, language)
     findings += unusable
     refused_messages = find_refused_messages(context.architecture, ros)
@@ -137,6 +141,20 @@ def _tell_other_ros(ros: int) -> Diagnostic:
         NO_SPAN,
         help_line="generate with another backend, or write another `distro` below `ros`",
     )
+
+
+def _tell_nothing(context: GenerationContext, programs: Collection[object], language: str) -> Iterator[Diagnostic]:
+    """Say why no program is made, where none is though everything is asked for."""
+    if programs or not context.is_whole:
+        return
+    if not list_generated_nodes(context.architecture):
+        message = "there is no node to generate: each exists already, or is no node of ROS"
+        help_line = "`status: planned` says of a node that it does not exist yet"
+    else:
+        name, other_name = ("C++", "Python") if language == "cpp" else ("Python", "C++")
+        message = f"no node is in {name}: all that are to be generated are in {other_name}"
+        help_line = f"write `language: {language}` at nodes that are to be in {name}"
+    yield replace(tell_left_out(message, NO_SPAN, help_line=help_line), severity=Severity.NOTE)
 
 
 def _name_module(program_name: str) -> str:

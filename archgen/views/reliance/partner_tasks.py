@@ -189,6 +189,8 @@ def _list_planned(lookup: Lookup, impact: PartnerImpact, partner: str) -> Iterat
         own = {each.id for each in activities.get(node.id, ())}
         chains = [each.result.id for each in impact.chains if any(term.activity in own for term in each.result.terms)]
         components = [lookup.architecture.components[name] for name in node.implements]
+        if not node.written and all(each.status == "existing" for each in components):
+            continue  # it exists, and which node it is nobody wrote yet
         requirements = dict.fromkeys(use.text for each in components for use in each.requirements if use.text in alone)
         given = [
             each

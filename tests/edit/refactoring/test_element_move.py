@@ -92,6 +92,19 @@ def test_a_component_moves_into_another_group_with_all_that_is_said_of_it(versio
     assert moved["two.yaml"] == OTHER.replace("sensing", "driving")
 
 
+def test_the_owner_is_written_for_the_project_where_a_variant_comes_first(tmp_path: Path) -> None:
+    start, _, variant = PROJECT.partition("variants:\n")
+    groups = start[start.index("groups:") : start.index("types: ")]
+    (tmp_path / "archgen.yaml").write_text(
+        start.replace(groups, "").replace("[two.yaml, types.yaml]", "[two.yaml]") + f"variants:\n{variant}",
+        encoding="utf-8",
+    )
+    (tmp_path / "two.yaml").write_text(groups, encoding="utf-8")
+    moved = texts(move(judge_version(load_project(tmp_path)), "sensing.camera", "driving"))
+    assert "        outputs: {image: Image}   # in colour\n        owner: lab\n" in moved["two.yaml"]
+    assert "owner" not in moved["archgen.yaml"]
+
+
 def test_an_element_moves_into_a_new_file_that_is_read(version: JudgedVersion) -> None:
     moved = texts(move(version, "sensing.camera", file="eyes/camera.yaml"))
     assert moved["eyes/camera.yaml"] == (

@@ -208,11 +208,32 @@ def test_two_topics_never_become_one(tmp_path: Path) -> None:
 
 def test_how_to_see_what_was_signed_under_another_name_is_told_as_a_command(tmp_path: Path) -> None:
     revision = "14fa8181685d006e3f0ad642f6d748ceec0f02e0"
-    agreement = f"{{rules: 2, tag: signed/lab-shop/2026-11-29, revision: {revision}, terms: a1b2c3, by: {{lab: 'A, 2026-11-29'}}, versions: {{}}}}"
+    agreement = f"{{rules: 2, tag: signed/lab-shop/2026-11-29, revision: {revision}, terms: a1b2c3, by: {{lab: 'A, 2026-11-29'}}, versions: {{lab: {{body.planner.plan: 3fa9c1}}}}}}"
     version = read(tmp_path, f"{PROJECT}agreements: {{lab-shop: {{signed: {agreement}}}}}\n")
-    (note,) = [each for each in rename(version, "planner.plan", "route").notes if "signed" in each]
     words = "`archgen interfaces --between lab shop --signed signed/lab-shop/2026-11-29` says what is called otherwise since"
-    assert note == f"what was signed is not edited: {words}"
+    for named, name in (
+        ("planner.plan", "route"),
+        ("body", "trunk"),
+        ("type Angle", "Bend"),
+    ):
+        notes = [each for each in rename(version, named, name).notes if "signed" in each]
+        assert notes == [f"what was signed is not edited: {words}"], named
+    for named, name in (("view some", "few"), ("host pc", "computer"), ("body.left", "port_side"), ("R-1", "R-2")):
+        assert not [each for each in rename(version, named, name).notes if "signed" in each], named
+
+
+def test_a_partner_that_has_an_agreement_keeps_its_name(tmp_path: Path) -> None:
+    agreed = PROJECT + "agreements: {lab-shop: {terms: {late: the robot stops}}}\n"
+    with pytest.raises(EditRefusedError, match=r"archgen\.yaml:30:14 is an agreement under the ids of both") as refused:
+        rename(read(tmp_path, agreed), "partner shop", "seller")
+    assert refused.value.by_hand == "take it away, rename, and write it again as `lab-seller`"
+    with pytest.raises(EditRefusedError) as refused:
+        rename(
+            read(tmp_path, agreed.replace("terms: {late: the robot stops}", "signed: {rules: 2}")), "partner lab", "a"
+        )
+    assert (
+        refused.value.by_hand == "what was signed names them: take the agreement away, rename, and let both sign again"
+    )
 
 
 def test_chapters_follow_and_programs_are_named(tmp_path: Path) -> None:
@@ -302,6 +323,18 @@ def test_an_element_of_a_library_is_edited_there(tmp_path: Path) -> None:
         rename(version, "component_type shared.eye", "ear")
     assert refused.value.by_hand.startswith("edit it in the library's files")
     assert added_words(rename(version, "b.eye", "ear"))[0].startswith("b: {components: {ear: {is: shared.eye}")
+
+
+def test_a_library_is_renamed_whatever_its_types_hold(tmp_path: Path) -> None:
+    (tmp_path / "shared").mkdir()
+    types = "motor: {inputs: {target: {type: T}}, outputs: {state: {type: T}}}\n"
+    hand = "hand: {inputs: {grip: {type: T}}, outputs: {state: {from: thumb.state}}, components: {thumb: {is: motor, inputs: {target: self.grip}}}}\n"
+    (tmp_path / "shared" / "parts.yaml").write_text(f"component_types:\n  {types}  {hand}", encoding="utf-8")
+    text = SHORT + "libraries: {shared: shared}\n"
+    version = read(tmp_path, text.replace("one_b: {", "hand: {is: shared.hand}, one_b: {"))
+    renamed = rename(version, "library shared", "parts")
+    assert [each for each in added_words(renamed) if "parts" in each] == added_words(renamed)
+    assert any("hand: {is: parts.hand}" in each for each in added_words(renamed))
 
 
 def test_a_file_that_is_read_by_the_id_of_a_partner_is_named_first(tmp_path: Path) -> None:

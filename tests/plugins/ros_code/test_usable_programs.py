@@ -59,3 +59,23 @@ def test_each_package_is_told_once(tmp_path: Path) -> None:
     usable, findings = drop_unusable(programs, "python")
     assert list(usable) == [("fine", "z")]
     assert [each.element for each in findings] == ["a"]
+
+
+def test_why_nothing_is_made_is_told_as_a_note(tmp_path: Path) -> None:
+    made = make(tmp_path, "package: other")
+    assert len(made.data["programs"]) == 2
+    architecture = check_project(tmp_path).architecture
+    (finding,) = make_view(GenerationContext(architecture, options={"language": "cpp"})).findings
+    assert (finding.message, finding.effective_severity.value) == (
+        "no node is in C++: all that are to be generated are in Python",
+        "note",
+    )
+    assert finding.help == "write `language: cpp` at nodes that are to be in C++"
+    file = tmp_path / "archgen.yaml"
+    text = file.read_text(encoding="utf-8").replace("language: python", "status: existing")
+    file.write_text(text, encoding="utf-8")
+    (finding,) = make_view(GenerationContext(check_project(tmp_path).architecture)).findings
+    assert finding.message == "there is no node to generate: each exists already, or is no node of ROS"
+    # Who asks for a part knows that it may be empty.
+    part = GenerationContext(check_project(tmp_path).architecture, components=frozenset())
+    assert make_view(part).findings == ()

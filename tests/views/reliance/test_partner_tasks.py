@@ -103,6 +103,11 @@ def test_planned_nodes_come_with_what_waits_for_them(tmp_path: Path) -> None:
     (eye,) = tasks_of(tmp_path, "north", planned).planned
     assert (eye.node.id, eye.chains, eye.partners) == ("eye", ("talk",), ("south", "west"))
     assert [each.node.id for each in tasks_of(tmp_path, "south", planned).planned] == []
+    # A component that exists is not to be made, though nobody wrote its node yet.
+    unwritten = ROBOT.replace("  eye: {implements: eye, timing: {period: 100 ms, wcet: 5 ms}}\n", "")
+    for status, names in (("planned", ["eye"]), ("existing", [])):
+        told = unwritten.replace("eye: {title: Eye,", f"eye: {{title: Eye, status: {status},")
+        assert [each.node.id for each in tasks_of(tmp_path, "north", told).planned] == names
 
 
 def test_what_others_changed_is_told_to_whom_it_concerns(tmp_path: Path) -> None:

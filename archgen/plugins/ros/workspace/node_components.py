@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
@@ -136,6 +136,7 @@ class NodeWriter:
         if known.library_type:
             written.component |= {"is": f"{LIBRARY}.{known.library_type}", **self._choose_stamps(known)}
             self._account.count("node of the library")
+            self._note_other_topics(known)
         if known.program is None:
             if not known.library_type and known.node.form != "program":
                 unknown = "its name, and what it says to ROS, are" if known.is_nameless else "what it says to ROS is"
@@ -193,6 +194,24 @@ class NodeWriter:
             parameters = nest_parameters({k: v for k, v in known.node.parameters.items() if k not in left_out})
             if parameters:
                 data["parameters"] = parameters
+
+    def _note_other_topics(self, known: NodeKnowledge) -> None:
+        """Say which topics are named to a type of the library as it is told of its own (`topics.X.topic`), and are none of these."""
+        if known.program is not None:
+            return
+        namings = _list_namings(known.library_type, self._distro)
+        endings = {name.rpartition(".")[2] for name in namings if "." in name and not re.search(r"[*{]", name)}
+        naming = re.compile("|".join(_list_naming_parameters(known.library_type, self._distro)) or "(?!)")
+        for name, value in flatten_parameters(known.node.parameters).items():
+            is_named = isinstance(value, str) and "." in name and name.rpartition(".")[2] in endings
+            if is_named and not naming.fullmatch(name):
+                self._account.add_note(
+                    "topic",
+                    f"`{value}` (parameter `{name}` of `{known.node.known_name}`): `{LIBRARY}.{known.library_type}` has no port for it",
+                    known.node.span,
+                    f"make a component type from it (`is: {LIBRARY}.{known.library_type}`) with one more input, and in its"
+                    f" `node` `subscribes: {{INPUT: {{named_by: {name}}}}}`",
+                )
 
     def _write_found(self, written: WrittenNode, found: FoundNode, known: NodeKnowledge, *, is_first: bool) -> None:
         data, name, namespace = written.data, settle(found.name), settle(found.namespace)
@@ -309,14 +328,24 @@ def _name_port(name: str, endpoint: FoundEndpoint, taken: Mapping[str, Any]) -> 
 def _list_naming_parameters(library_type: str, distro: str) -> list[str]:
     """Return the parameters by which a type of the library is told what its topics are called, as regular expressions."""
     found: list[str] = []
+    for text in _list_namings(library_type, distro):
+        found += [re.escape(name) for name in re.findall(r"\{(\w+)\}", text)]
+        found.append(".+".join(map(re.escape, re.split(r"\{\w+\}|\*", text))))
+    for value in _find_values(library_type, distro, "when"):
+        found += [re.escape(inner.key) for inner in value] if isinstance(value, MappingNode) else []
+    return found
+
+
+def _list_namings(library_type: str, distro: str) -> list[str]:
+    return [each.text for each in _find_values(library_type, distro, "named_by") if isinstance(each, ScalarNode)]
+
+
+def _find_values(library_type: str, distro: str, key: str) -> Iterator[YamlNode]:
+    """Yield what a type of the library says below a key, at any depth."""
     pending: list[YamlNode] = [load_shipped_component_types(distro)[library_type].value]
     while pending:
         mapping = pending.pop()
         for entry in mapping if isinstance(mapping, MappingNode) else ():
-            if entry.key == "named_by" and isinstance(entry.value, ScalarNode):
-                found += [re.escape(name) for name in re.findall(r"\{(\w+)\}", entry.value.text)]
-                found.append(".+".join(map(re.escape, re.split(r"\{\w+\}|\*", entry.value.text))))
-            elif entry.key == "when" and isinstance(entry.value, MappingNode):
-                found += [re.escape(inner.key) for inner in entry.value]
+            if entry.key == key:
+                yield entry.value
             pending.append(entry.value)
-    return found

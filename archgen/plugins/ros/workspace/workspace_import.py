@@ -360,7 +360,8 @@ def _choose_entry(launched: LaunchedFiles) -> LaunchedFiles:
         return (not any(word in shown for word in _GENERATED_NAMES), -len(started[path][0]), shown)
 
     ranked = sorted(started, key=rank)
-    lines = [f"{files.show_path(path)} ({len(started[path][0])} nodes)" for path in ranked]
+    counts = {path: len(started[path][0]) for path in ranked}
+    lines = [f"{files.show_path(path)} ({number} node{'s' * (number > 1)})" for path, number in counts.items()]
     more = f" and {len(lines) - _MAX_SHOWN} more" if len(lines) > _MAX_SHOWN else ""
     words = f"{len(lines)} launch files start nodes, and none of them includes the others"
     raise ForeignFileError(

@@ -324,5 +324,16 @@ class _Wiring:
                 inputs[node.id][port] = given if is_same or not typed else FlowMapping({"from": given, **typed})
             elif own is not None or not self._architecture.inputs[str(each.port)].optional:
                 where = f"Nobody here {_VERBS[each.flow]} {each.name}" if each.name else "Its name is not known"
+                starter = each.name and each.use == "subscribes" and self._find_other_way(each.name)
+                where = f"{starter} in another way to start it than this one" if starter else where
                 inputs[node.id].setdefault(port, FlowMapping({"external": where, **typed}))
         return inputs
+
+    def _find_other_way(self, name: str) -> str:
+        """Return which node a remap gives a name in a way to start it that is kept as a hint; empty where none does."""
+        for node in self._written.values():
+            ways = node.known.node.other_ways if node.known is not None else ()
+            base = f"/{node.known.node.namespace.strip('/')}".rstrip("/") if node.known is not None else ""
+            if any(name in {to, f"{base}/{to}"} for way in ways for to in way.get("remaps", {}).values()):
+                return f"{node.id} has {name}"
+        return ""

@@ -283,7 +283,7 @@ def test_several_launch_files_are_other_robots(workspace: Path, run: Run) -> Non
     assert done.status == 1
     assert "2 launch files start nodes, and none of them includes the others" in done.err
     assert (
-        "`--launch`, likeliest first: my_bringup/launch/robot.launch.py (6 nodes), my_driver/launch/driver.launch.xml (1 nodes)"
+        "`--launch`, likeliest first: my_bringup/launch/robot.launch.py (6 nodes), my_driver/launch/driver.launch.xml (1 node)"
         in done.err
     )
     assert not Path("robot").exists()
@@ -642,6 +642,63 @@ def test_velocities_have_a_time_where_a_parameter_says_so(
     assert f"publishes /out {message}" in shown
     assert f"subscribes to /cmd_vel {message}" in shown
     assert "type-mismatch" not in run("check", "robot").out
+
+
+MUX = """
+    from launch import LaunchDescription
+    from launch.actions import DeclareLaunchArgument
+    from launch.conditions import IfCondition, UnlessCondition
+    from launch.substitutions import LaunchConfiguration
+    from launch_ros.actions import Node
+
+    def generate_launch_description():
+        filtered = LaunchConfiguration("filtered")
+        lidar = {"package": "sllidar_ros2", "executable": "sllidar_node", "name": "lidar"}
+        return LaunchDescription([
+            DeclareLaunchArgument("filtered", default_value="false"),
+            Node(condition=UnlessCondition(filtered), **lidar),
+            Node(condition=IfCondition(filtered), remappings=[("scan", "scan_raw")], **lidar),
+            Node(condition=IfCondition(filtered), package="laser_filters", executable="scan_to_scan_filter_chain",
+                 remappings=[("scan", "scan_raw"), ("scan_filtered", "scan")]),
+            Node(package="twist_mux", executable="twist_mux", name="twist_mux",
+                 parameters=[{"topics.navigation.topic": "cmd_vel", "topics.gamepad.topic": "cmd_vel_pad",
+                              "locks.stop.topic": "stop", "topics.gamepad.timeout": 0.5}]),
+        ])
+"""
+
+
+def test_topics_that_a_library_type_has_no_port_for_are_told(
+    tmp_path: Path, run: Run, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    write_workspace(Path("src"), {"drive/launch/drive.launch.py": MUX})
+    done = run("import", "workspace", "src", "--distro", "jazzy", "-o", "robot")
+    assert done.status == 0, done.err
+    told = [line for line in done.out.splitlines() if "has no port for it" in line]
+    assert [line.partition(": topic: ")[2] for line in told] == [
+        "`cmd_vel_pad` (parameter `topics.gamepad.topic` of `/twist_mux`): `ros.twist_mux` has no port for it",
+        "`stop` (parameter `locks.stop.topic` of `/twist_mux`): `ros.twist_mux` has no port for it",
+    ]
+    # What the help says is enough.
+    Path("robot/own.yaml").write_text(
+        "component_types:\n  mux: {is: ros.twist_mux, inputs: {pad: {type: geometry_msgs/msg/TwistStamped}},"
+        " node: {subscribes: {pad: {named_by: topics.gamepad.topic}}}}\n",
+        encoding="utf-8",
+    )
+    slice_ = Path("robot/robot.yaml")
+    slice_.write_text(slice_.read_text(encoding="utf-8").replace("is: ros.twist_mux", "is: mux"), encoding="utf-8")
+    assert "subscribes to /cmd_vel_pad" in run("show", "-C", "robot", "twist_mux").out
+
+
+def test_what_another_way_to_start_a_node_gives_is_not_called_unpublished(
+    tmp_path: Path, run: Run, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    write_workspace(Path("src"), {"drive/launch/drive.launch.py": MUX})
+    assert run("import", "workspace", "src", "--distro", "jazzy", "-o", "robot").status == 0
+    text = Path("robot/robot.yaml").read_text(encoding="utf-8")
+    assert "Nobody here publishes /scan_raw" not in text
+    assert "lidar has /scan_raw in another way to start it than this one" in text
 
 
 def test_cmake_files_that_are_included_are_read(tmp_path: Path, run: Run, monkeypatch: pytest.MonkeyPatch) -> None:
