@@ -73,6 +73,8 @@ in which something could not be read.
 """
 _FILE_RULES = frozenset(
     {
+        "borrowed-call",
+        "borrowed-message",
         "incompatible-qos",
         "misplaced-frame",
         "role-mismatch",
