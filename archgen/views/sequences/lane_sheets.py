@@ -371,9 +371,18 @@ class _Drawing:
             }
             title = f"{names[0]} → {names[1]}" if is_begin else names[1]
             texts.append(SheetText(left, y, f"{each.step.number}", 8, side="left", ink="muted"))
-            texts.append(SheetText(left + 14, y, cut_text(title, int((_LIST_NAMES - 20) / _BOLD_WIDTH)), 8, bold=True, tooltip=" → ".join(names)))
+            texts.append(
+                SheetText(
+                    left + 14,
+                    y,
+                    cut_text(title, int((_LIST_NAMES - 20) / _BOLD_WIDTH)),
+                    8,
+                    bold=True,
+                    tooltip=" → ".join(names),
+                )
+            )
             words = " ".join((step.say or "").split())
-            room = int((_LIST_WIDTH - 90 - left - _LIST_NAMES) / _LETTER_WIDTH)
+            room = min(44, int((_LIST_WIDTH - 90 - left - _LIST_NAMES) / _LETTER_WIDTH))
             texts.append(SheetText(left + _LIST_NAMES, y, cut_text(words, room), 8, ink="muted", tooltip=words))
             if time := self._write_step_time(each):
                 texts.append(SheetText(_LIST_WIDTH - 52, y, time, 8, side="right"))
