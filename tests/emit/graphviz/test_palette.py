@@ -54,7 +54,7 @@ def measure_contrast(one: str, other: str) -> float:
 
 @pytest.mark.parametrize("sight", _SIGHTS)
 @pytest.mark.parametrize("is_dark", [False, True])
-def test_colours_of_partners_are_told_apart(sight: str, is_dark: bool) -> None:
+def test_colours_of_partners_are_told_apart(sight: str, *, is_dark: bool) -> None:
     dark = dict(palette.dark_pairs())
     colours = [dark[each] if is_dark else each for each in palette.PARTNER_HUES]
     paper = dark[palette.PAPER] if is_dark else palette.PAPER
