@@ -100,10 +100,12 @@ def describe_lateness(analysis: Analysis, result: ChainResult, deadline: Fractio
         )
         return f"{known}, and figures are missing: nobody can say whether it meets {deadline_text}."
     if late:
-        if late.kind == "at most":
-            return f"It may take up to {excess}; nothing shows that it ever does."
         known, least_excess = _write_least(late.duration), _write_least(late.excess)
-        return f"What is known of its longest time adds up to {known}, {least_excess} longer than {deadline_text} allows; nothing shows that it ever does."
+        sum_text = (
+            f"What is known of its longest time adds up to {known}, {least_excess} longer than {deadline_text} allows"
+        )
+        head = f"It may take up to {excess}" if late.kind == "at most" else sum_text
+        return f"{head}; nothing shows that it ever does."
     return f"Nothing says whether it meets {deadline_text}: {_describe_most(analysis, result)}."
 
 

@@ -82,3 +82,17 @@ def test_lanes_are_shown_whole_or_as_a_list(browser: Browser, example: Path, wid
     assert shown.evaluate("box => box.scrollWidth <= box.clientWidth") == (width > 600)
     assert shown.get_attribute("tabindex") == "0"
     opened.context.close()
+
+
+def test_a_word_of_any_length_widens_no_card(browser: Browser, example: Path) -> None:
+    opened = browser.new_context(viewport={"width": 1440, "height": 900}).new_page()
+    for path in ("index.html", "late/forth.html", "todo/tum.html"):
+        opened.goto(f"file://{example}/{path}")
+        opened.evaluate(
+            "document.querySelectorAll('.card tbody td:first-child').forEach(cell => cell.append('W'.repeat(90)))"
+        )
+        boxes = "[...document.querySelectorAll('.card .scroll')]"
+        assert opened.evaluate(f"{boxes}.filter(box => box.scrollWidth > box.clientWidth + 1).length") == 0
+        tallest = "Math.max(...[...document.querySelectorAll('.card tbody tr')].map(row => row.offsetHeight))"
+        assert opened.evaluate(tallest) < 500
+    opened.context.close()
