@@ -16,7 +16,7 @@ from archgen.model.use_case_steps import Step, StepEnd
 from archgen.views.drawing_set import make_drawings
 from archgen.views.lookup import Lookup, make_lookup
 from archgen.views.picture_shapes import SequenceChart, Sheet
-from archgen.views.sequences.lane_sheets import MOST_LIFELINES, _order_lanes, draw_lane_sheets, place_steps
+from archgen.views.sequences.lane_sheets import MOST_LIFELINES, _order_lanes, _wrap, draw_lane_sheets, place_steps
 from archgen.views.timing.timing_lookup import analyse_with_chains
 from tests.judged_projects import judge_ramcip
 
@@ -93,6 +93,11 @@ def test_all_words_and_times_stand_on_cards_and_in_the_list() -> None:
     words = [text.text for text in wide.texts]
     assert {"a dull sound,", "then a cry", "ask whether she wants", "help"} <= set(words)
     assert words.count("Dialogue Manager") == 2
+    assert list(_wrap("Please leave the stick. Shall I pick it up?", (21, 21, 15))) == [
+        "Please leave the",
+        "stick. Shall I pick",
+        "it up?",
+    ]
     assert {"ACCREA", "FORTH-ICS", "The resident", "The daughter"} <= set(words)
     numbers = [int(text.text) for text in upright.texts if text.text.isdecimal()]
     assert sorted(numbers) == list(range(1, 17))

@@ -267,7 +267,8 @@ class _Drawing:
         component = None if is_outside else self.lookup.architecture.find_component(card.end.participant)
         ref = f"component:{component.id}" if component else None
         tooltip = "\n".join(filter(None, (title, card.words, card.time)))
-        first, second = _wrap(card.words, int((width - 11) / _LETTER_WIDTH))
+        letters = int((width - 11) / _LETTER_WIDTH)
+        lines = _wrap(card.words, (letters, letters, letters - len(card.time)))
         bar = SheetBar(
             x,
             y,
@@ -281,11 +282,7 @@ class _Drawing:
         )
         texts = [SheetText(x + 6, y + 9, cut_text(title, int((width - 11) / _BOLD_WIDTH)), 8, bold=True)]
         texts += [SheetText(x + width - 6, y + 38.5, card.time, 8, side="right", ink="muted")] if card.time else []
-        texts += [
-            SheetText(x + 6, y + 19.5 + at * 9.5, words, 8, ink="muted")
-            for at, words in enumerate((first, second))
-            if words
-        ]
+        texts += [SheetText(x + 6, y + 19.5 + at * 9.5, words, 8, ink="muted") for at, words in enumerate(lines)]
         return [bar], texts
 
     def _draw_link(  # noqa: PLR0913, PLR0917 - two cards and where things stand
@@ -441,10 +438,14 @@ def _shorten(text: str) -> str:
     return shorten_text(text)
 
 
-def _wrap(text: str, width: int) -> tuple[str, str]:
-    """Cut a text into two lines at a blank; what is longer ends in an ellipsis."""
-    if len(text) <= width:
-        return text, ""
-    at = text.rfind(" ", 0, width + 1)
-    at = at if at > 0 else width
-    return text[:at], cut_text(text[at:].strip(), width)
+def _wrap(text: str, widths: Sequence[int]) -> Iterator[str]:
+    """Cut a text into lines at blanks; what is longer than all of them ends in an ellipsis."""
+    for width in widths[:-1]:
+        if len(text) <= width:
+            yield text
+            return
+        at = text.rfind(" ", 0, width + 1)
+        at = at if at > 0 else width
+        yield text[:at]
+        text = text[at:].strip()
+    yield cut_text(text, widths[-1])
