@@ -8,6 +8,7 @@ from archgen.diagnostics.diagnostic import Diagnostic
 
 _WHOLE_MODEL_RULES = frozenset(
     {
+        "borrowed-message",
         # Timing: one figure that could not be read changes the bounds of everything that shares a host with it.
         "broken-chain",
         "broken-promise",
@@ -74,7 +75,6 @@ in which something could not be read.
 _FILE_RULES = frozenset(
     {
         "borrowed-call",
-        "borrowed-message",
         "incompatible-qos",
         "misplaced-frame",
         "role-mismatch",
