@@ -88,6 +88,26 @@ def borrowed_call(architecture: Architecture) -> Iterator[Diagnostic]:
         )
 
 
+def borrowed_message(architecture: Architecture) -> Iterator[Diagnostic]:
+    """What message a type is, is said by the mapper that ships with archgen alone: one note for all such types."""
+    borrowed_types = {
+        name: (type_.message, spans[0])
+        for name, spans in _spans_by_type(architecture).items()
+        if (type_ := architecture.types.get(name)) is not None
+        and (type_.origin == "shipped" and type_.message and flow_of(type_.message) == "topic")
+    }
+    if not borrowed_types:
+        return
+    names = sorted(borrowed_types)
+    meanings = ", ".join(f"`{name}` is `{borrowed_types[name][0]}`" for name in names)
+    yield Diagnostic(
+        "borrowed-message",
+        f"the mapper that ships with archgen alone says what {'these types are' if names[1:] else 'this type is'}: {meanings}",
+        min((span for _, span in borrowed_types.values()), key=lambda span: (span.file, span.line, span.column)),
+        help=f"what is not meant so stands below `types:`, as in `{names[0]}: {{message: package/msg/Name}}`",
+    )
+
+
 def unused_type(architecture: Architecture) -> Iterator[Diagnostic]:
     """Nothing has a type that the project declares."""
     if architecture.partial:
@@ -155,5 +175,6 @@ def _is_mapped(architecture: Architecture, name: str) -> bool:
 RULES = (
     (unmapped_type, Severity.WARNING),
     (borrowed_call, Severity.WARNING),
+    (borrowed_message, Severity.NOTE),
     (unused_type, Severity.NOTE),
 )

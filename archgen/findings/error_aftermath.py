@@ -8,6 +8,7 @@ from archgen.diagnostics.diagnostic import Diagnostic
 
 _WHOLE_MODEL_RULES = frozenset(
     {
+        "borrowed-message",
         # Timing: one figure that could not be read changes the bounds of everything that shares a host with it.
         "broken-chain",
         "broken-promise",
@@ -73,6 +74,7 @@ in which something could not be read.
 """
 _FILE_RULES = frozenset(
     {
+        "borrowed-call",
         "incompatible-qos",
         "misplaced-frame",
         "role-mismatch",

@@ -25,6 +25,8 @@ UNUSED_RULES = frozenset(
 MISSING_RULES = frozenset(
     {
         "absent-core",
+        "borrowed-call",
+        "borrowed-message",
         "disconnected-component",
         "empty-reference",
         "half-written",

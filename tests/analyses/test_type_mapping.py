@@ -120,6 +120,7 @@ def test_rules_have_pages() -> None:
     assert {rule.name: rule.severity for rule in rules} == {
         "unmapped-type": Severity.WARNING,
         "borrowed-call": Severity.WARNING,
+        "borrowed-message": Severity.NOTE,
         "unused-type": Severity.NOTE,
     }
     for rule in rules:

@@ -153,6 +153,7 @@ def read_quick(run: Run, folder: Path, seed: int, *, agrees: bool = True) -> dic
     statements = {name: each._replace(verdict=each.verdict.partition(" (was")[0]) for name, each in rows}
     assert statements
     check_statements("comment", statements, chains)
+    check_lists(run, robot, chains)
     if not agrees:
         return chains
     agreement = run("interfaces", robot, "--between", "p", "q").out
@@ -161,6 +162,37 @@ def read_quick(run: Run, folder: Path, seed: int, *, agrees: bool = True) -> dic
     )
     check_statements("agreement", dict(agreed), chains)
     return chains
+
+
+def check_lists(run: Run, robot: Path, chains: dict[str, dict[str, object]]) -> None:
+    """Hold what `todo` and `list` say against the JSON: verdicts, how many are met, what is to be done for which chain."""
+    listed = {
+        each["id"]: each for each in json.loads(run("list", "--of", "chains", "-C", robot, "--format", "json").out)
+    }
+    assert set(listed) == set(chains)
+    for partner in ("p", "q"):
+        text = run("todo", "--partner", partner, robot).out
+        reliance = json.loads(run("impact", "--partner", partner, robot, "--format", "json").out)["chains"]
+        titles = {listed[each["id"]]["title"]: each["id"] for each in reliance}
+        table = text.partition("Deadlines through them")[2].partition("\n\n")[0].splitlines()[2:]
+        rows = {re.split("  +", line.strip())[0]: line.rpartition("  ")[2] for line in table if "  " in line.strip()}
+        assert {titles[title]: verdict for title, verdict in rows.items()} == {
+            each["id"]: chains[each["id"]]["verdict"] for each in reliance
+        }
+        met_count = sum(chains[each["id"]]["verdict"] == "met" for each in reliance)
+        if reliance:
+            assert f" {met_count} of {len(reliance)} through them are met" in text
+        tasks = json.loads(run("todo", "--partner", partner, robot, "--format", "json").out)["tasks"]
+        for task in tasks:
+            if named := re.match(r"(?:Bring|Show that) `(c\d)`.*?(?:: (missed|not proven|open)|$)", task["text"]):
+                verdict = chains[named[1]]["verdict"]
+                assert verdict != "met", task
+                assert named[2] in {None, verdict}, task
+            # What is late is a finding, too.
+            if late := re.match(r"the chain `(c\d)` misses", task["text"]):
+                assert chains[late[1]]["verdict"] == "missed"
+            if late := re.match(r"nothing proves that the chain `(c\d)`", task["text"]):
+                assert chains[late[1]]["verdict"] == "not proven"
 
 
 @pytest.mark.parametrize("seed", mark_further_samples([24, 17, 51]))

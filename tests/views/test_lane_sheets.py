@@ -16,7 +16,7 @@ from archgen.model.use_case_steps import Step, StepEnd
 from archgen.views.drawing_set import make_drawings
 from archgen.views.lookup import Lookup, make_lookup
 from archgen.views.picture_shapes import SequenceChart, Sheet
-from archgen.views.sequences.lane_sheets import MOST_LIFELINES, _order_lanes, draw_lane_sheets, place_steps
+from archgen.views.sequences.lane_sheets import MOST_LIFELINES, _order_lanes, _wrap, draw_lane_sheets, place_steps
 from archgen.views.timing.timing_lookup import analyse_with_chains
 from tests.judged_projects import judge_ramcip
 
@@ -91,16 +91,28 @@ def test_all_words_and_times_stand_on_cards_and_in_the_list() -> None:
     lookup = look_up()
     wide, upright = draw_lane_sheets(lookup, "UC-4")
     words = [text.text for text in wide.texts]
-    assert "a dull sound, then a cry" in words
+    assert {"a dull sound,", "then a cry", "ask whether she wants", "help"} <= set(words)
     assert words.count("Dialogue Manager") == 2
+    assert list(_wrap("Please leave the stick. Shall I pick it up?", (21, 21, 15))) == [
+        "Please leave the",
+        "stick. Shall I pick",
+        "it up?",
+    ]
     assert {"ACCREA", "FORTH-ICS", "The resident", "The daughter"} <= set(words)
     numbers = [int(text.text) for text in upright.texts if text.text.isdecimal()]
     assert sorted(numbers) == list(range(1, 17))
     assert all(text.size >= 8 for sheet in (wide, upright) for text in sheet.texts)
-    assert max(text.x for text in upright.texts) <= 440
+    assert max(text.x for text in upright.texts) <= 530
     # No card lies on another one: 16 steps, and two that a way ends at.
-    cards = [(bar.x, bar.y) for bar in wide.bars if bar.height == 37]
+    cards = [(bar.x, bar.y) for bar in wide.bars if bar.height == 46]
     assert len(cards) == len(set(cards)) == 18
+    # Eight tenths of its size fit into a page in a window of 1440 pixels.
+    assert max(bar.x + bar.width for bar in wide.bars) * 4 / 3 * 0.8 <= 1075
+    # What it took stands beside the lanes, not on them.
+    assert max(bar.x + bar.width for bar in wide.bars if bar.behind) < next(
+        text.x for text in wide.texts if text.text == "at the latest"
+    )
+    assert not any("one row" in note for note in upright.notes)
 
 
 def test_what_all_steps_take_is_never_above_their_bound() -> None:

@@ -255,7 +255,7 @@ def _write_squares(members: Sequence[tuple[int | None, int]]) -> str:
     else:
         cells = [(max(2, count * _MEMBER_WIDTH // total), hue) for hue, count in members]
     squares = "".join(
-        f'<TD FIXEDSIZE="TRUE" WIDTH="{width}" HEIGHT="6" BGCOLOR="{palette.hue_colour(hue) if hue is not None else palette.FADED}"></TD>'
+        f'<TD FIXEDSIZE="TRUE" WIDTH="{width}" HEIGHT="6" BGCOLOR="{palette.partner_colour(hue)}"></TD>'
         for width, hue in cells
     )
     # Of fixed size: in a wider cell the squares would come apart.

@@ -90,7 +90,10 @@ _KEY_SENTENCES = {
 def add_graph_legend(scene: Scene, graph: Graph) -> Scene:
     """Add a graph's legend and notes below a scene, at its left."""
     entries = [entry for key in graph.legend for entry in _legend_entries(key)]
-    entries += [(_box_sample(Box("", "", style="group", colour=index)), text) for index, text in graph.legend_colours]
+    entries += [
+        (_box_sample(Box("", "", style="group", colour=index), is_partner=graph.kind == "overview"), text)
+        for index, text in graph.legend_colours
+    ]
     return add_legend(
         scene, entries, [_KEY_SENTENCES[key] for key in graph.legend if key in _KEY_SENTENCES] + list(graph.notes)
     )
@@ -123,7 +126,7 @@ def _legend_entries(key: str) -> Iterator[tuple[Scene, str]]:
         yield _arrow_sample(key, arrow), words
 
 
-def _box_sample(box: Box) -> Scene:
+def _box_sample(box: Box, *, is_partner: bool = False) -> Scene:
     # A second frame is drawn outside of the node's size: less of it keeps all samples equally large.
     frame_space = (
         6 if box.style in {"fold", "action", "composed"} or box.fill == "once" or box.change == "changed" else 0
@@ -131,6 +134,7 @@ def _box_sample(box: Box) -> Scene:
     width, height = _SAMPLE_SIZE[0] - frame_space, _SAMPLE_SIZE[1] - frame_space
     attributes = {
         **box_styles.style_box(box, lambda _: None),
+        **(dict.fromkeys(("color", "fillcolor"), f'"{palette.partner_colour(box.colour)}"') if is_partner else {}),
         "label": '""',
         "fixedsize": '"true"',
         "width": f"{width / 72:.4f}",

@@ -56,6 +56,32 @@ _DARK_HUES = (
     "#cbb68f",
 )
 
+PARTNER_HUES = (
+    "#219e8b",
+    "#5e2206",
+    "#4606c0",
+    "#db514e",
+    "#7e7bf8",
+    "#b848a4",
+    "#32761e",
+    "#603868",
+    "#ab2a54",
+)
+"""Nine fills for partners, the first ones the least alike; each with at least 3:1 on paper, and told apart by the colour-blind
+(searched for and measured by CIEDE2000: at least 10 between any two for protan, deutan and tritan vision, 17 for others).
+"""
+_DARK_PARTNER_HUES = (
+    "#68e3d1",
+    "#f15f13",
+    "#9ba4ed",
+    "#aa666c",
+    "#9366b1",
+    "#e4c9fb",
+    "#cdf8a0",
+    "#c48eb0",
+    "#ffa6a8",
+)
+
 INK = "#1b2126"
 """The text on a fill that is as light in the dark as on paper."""
 RIM = "#3d4853"
@@ -105,6 +131,11 @@ def hue_colour(index: int | None) -> str:
     return FRAME if index is None else HUES[index % len(HUES)]
 
 
+def partner_colour(number: int | None) -> str:
+    """Return the fill of a partner, counted from 1; grey for all who have none of their own."""
+    return PARTNER_HUES[number - 1] if number else FADED
+
+
 def mix_tint(colour: str, share: float = 0.08, paper: str = PAPER) -> str:
     """Return the paper's colour with a share of another colour mixed in."""
     pairs = ((int(colour[at : at + 2], 16), int(paper[at : at + 2], 16)) for at in (1, 3, 5))
@@ -133,7 +164,8 @@ def dark_pairs() -> tuple[tuple[str, str], ...]:
     hues = dict(zip(HUES, _DARK_HUES, strict=True))
     tints = {mix_tint(light): mix_tint(dark, 0.16, _DARK_PAPER) for light, dark in hues.items()}
     tints |= {mix_tint(light): mix_tint(_DARK[light], 0.16, _DARK_PAPER) for light in CHANGES.values()}
-    return tuple({**tints, **hues, **_DARK}.items())
+    partners = dict(zip(PARTNER_HUES, _DARK_PARTNER_HUES, strict=True))
+    return tuple({**tints, **hues, **partners, **_DARK}.items())
 
 
 def dark_rules(scope: str) -> str:

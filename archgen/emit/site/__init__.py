@@ -4,6 +4,9 @@ elsewhere.
 
 from __future__ import annotations
 
+import json
+import re
+from base64 import b64encode
 from collections.abc import Iterator, Mapping, Sequence
 from functools import cache
 from pathlib import Path
@@ -31,6 +34,7 @@ from archgen.views.explorer.map_shapes import ExplorerMap
 from archgen.views.search.search_entry import SearchEntry
 from archgen.views.shapes import Page, Paragraph
 
+_PAGE_FACE = re.compile(r"url\((fonts/inter[^)]*)\)[^}]*?unicode-range: ([^;]*);")
 FONT_FOLDER = Path(__file__).resolve().parent.parent / "fonts"
 """The font that pictures are laid out with. Pages load the same, so that text fits its boxes in every browser."""
 
@@ -188,4 +192,21 @@ def read_assets() -> tuple[tuple[str, bytes], ...]:
     font_paths = ((f"assets/fonts/{path.name.lower()}", path) for path in sorted(FONT_FOLDER.iterdir()))
     # Lower case, as all paths that archgen makes.
     files = [(name.lower(), path.read_bytes()) for name, path in (*asset_paths, *font_paths)]
-    return (*files, ("assets/pictures.css", drawing.embedded_style().encode()))
+    contents = dict(files)
+    return (
+        *files,
+        ("assets/pictures.css", drawing.embedded_style().encode()),
+        ("assets/fonts.js", _write_saved_faces(contents).encode()),
+    )
+
+
+def _write_saved_faces(files: Mapping[str, bytes]) -> str:
+    """Write the script with the faces of the pages, which a picture that is saved takes along: ranges of letters, and the face."""
+    faces = [
+        (
+            letters.replace("U+", "").split(", "),
+            f'@font-face{{font-family:Inter;font-weight:100 900;src:url(data:font/woff2;base64,{b64encode(files[f"assets/{file}"]).decode()}) format("woff2")}}',
+        )
+        for file, letters in _PAGE_FACE.findall(files["assets/site.css"].decode())
+    ]
+    return f"globalThis.archgenFaces = {json.dumps(faces)};\n"

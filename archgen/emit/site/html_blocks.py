@@ -245,12 +245,14 @@ class PageWriter:
         narrow_svg = (
             page_pictures.inline_svg(upright.svg, self.current_page.href, alt) if upright and upright.svg else ""
         )
-        narrow = f'<div class="canvas narrow">{narrow_svg}</div>\n' if narrow_svg else ""
         warning = f'<p class="notice warning">{escape_html(picture.warning)}</p>\n' if picture.warning else ""
         canvas = f"canvas {name_natural_width(picture)}" if self.standalone else "canvas"
-        # A sequence keeps its size: it is read from step to step, with the canvas moved below it.
+        # A sequence keeps its size: it is read from step to step, with the canvas moved below it, or as a list of steps.
         is_sequence = figure.graph.startswith(CHART_PREFIX)
         kind, focus = ("picture sequence", ' tabindex="0"') if is_sequence else ("picture", "")
+        narrow = f'<div class="canvas narrow"{focus}>{narrow_svg}</div>\n' if narrow_svg else ""
+        if narrow and is_sequence:
+            canvas += f" {_name_least_room(picture)}"
         return (
             f'<figure class="{kind}"{self._id_attribute(figure.anchor)}>\n<div class="{canvas}"{focus}>{svg}</div>\n{narrow}{warning}'
             f"<figcaption><span>{caption}</span>{self._picture_link(figure.graph, caption)}</figcaption>\n</figure>"
@@ -278,6 +280,17 @@ class PageWriter:
 def name_natural_width(picture: Picture) -> str:
     """Return the class that tells how wide a picture is by itself: a page's policy refuses style attributes."""
     return f"n{picture.width * 4 / 3:.0f}"
+
+
+_LEAST_SCALE = 0.8
+"""The smallest scale at which the words of a picture with lanes are easily read."""
+
+
+def _name_least_room(picture: Picture) -> str:
+    """Return the class that tells how many pixels a picture needs, in fifties; with less room its list is shown."""
+    room = round(picture.width * 4 / 3 * _LEAST_SCALE / 50) * 50
+    # No page has more than 1300.
+    return f"from-{min(1300, max(700, room))}"
 
 
 def _write_sort_number(cell: Inlines) -> str:

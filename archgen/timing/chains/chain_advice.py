@@ -94,15 +94,24 @@ def describe_lateness(analysis: Analysis, result: ChainResult, deadline: Fractio
         return f"It may take any time, and so longer than {deadline_text} allows."
     if result.verdict == "open":
         known = (
-            f"What is known of it adds up to {_write(bound.value)}"
+            f"What is known of it adds up to {_write_least(bound.value)}"
             if bound.value
             else "Nothing is known of how long it takes"
         )
         return f"{known}, and figures are missing: nobody can say whether it meets {deadline_text}."
     if late:
-        head = "It may take up to" if late.kind == "at most" else "What is known of its longest time adds up to"
-        return f"{head} {excess}; nothing shows that it ever does."
+        known, least_excess = _write_least(late.duration), _write_least(late.excess)
+        sum_text = (
+            f"What is known of its longest time adds up to {known}, {least_excess} longer than {deadline_text} allows"
+        )
+        head = f"It may take up to {excess}" if late.kind == "at most" else sum_text
+        return f"{head}; nothing shows that it ever does."
     return f"Nothing says whether it meets {deadline_text}: {_describe_most(analysis, result)}."
+
+
+def _write_least(value: Fraction) -> str:
+    """Write a time, in ns, that is at least so much: where it is shown with fewer digits, they stay true."""
+    return f">= {_write(value).removeprefix('~')}"
 
 
 def _describe_most(analysis: Analysis, result: ChainResult) -> str:

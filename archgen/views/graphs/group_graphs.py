@@ -134,7 +134,6 @@ def draw_overview(lookup: Lookup, direction: Direction | None = None) -> Graph:
     between = _flows_between_groups(lookup)
     arrows = merge_flows(between, _groups_of_flow, labels=False, by_style=False)
     hues = choose_partner_hues(lookup)
-    partners = architecture.partners
     graph = Graph(
         f"overview{UPRIGHT if direction else ''}",
         f"{architecture.project.title}: groups",
@@ -142,9 +141,7 @@ def draw_overview(lookup: Lookup, direction: Direction | None = None) -> Graph:
         tuple(_draw_closed_group(lookup, group, hues) for group in architecture.groups),
         arrows,
         direction=direction or architecture.layout.direction,
-        legend_colours=tuple(
-            (hue, partners[owner].title if owner in partners else owner) for owner, hue in hues.items()
-        ),
+        legend_colours=_explain_squares(lookup, hues),
         alt=_describe_flows(lookup, f"{count_noun(len(architecture.groups), 'group')} of components", arrows),
         asked=len(between),
         kind="overview",
@@ -152,16 +149,23 @@ def draw_overview(lookup: Lookup, direction: Direction | None = None) -> Graph:
     return add_legend_keys(graph)
 
 
-_HUES = 10
+_PARTNER_HUES = 9
 
 
 def choose_partner_hues(lookup: Lookup) -> dict[str, int]:
-    """Return the palette index of each owner of components, those with most first as far as there are hues."""
-    counts = Counter(each.owners[0] for each in lookup.architecture.components.values() if each.owners)
-    largest = [owner for owner, _ in counts.most_common(_HUES)]
-    order = [*(owner for owner in lookup.architecture.partners if owner in largest), *largest]
-    # The first hue is the grey of what belongs to nobody.
-    return {owner: (at + 1) % _HUES for at, owner in enumerate(dict.fromkeys(order))}
+    """Return the number of the colour of each partner that has one, in the order in which the project declares them.
+
+    Who is added at the end, or owns more than before, changes nobody's colour.
+    """
+    return {partner: at + 1 for at, partner in enumerate(list(lookup.architecture.partners)[:_PARTNER_HUES])}
+
+
+def _explain_squares(lookup: Lookup, hues: Mapping[str, int]) -> tuple[tuple[int, str], ...]:
+    """Return the colours of those who own components, and grey for all others together."""
+    owners = {each.owners[0] if each.owners else "" for each in lookup.architecture.components.values()}
+    entries = [(hue, lookup.architecture.partners[owner].title) for owner, hue in hues.items() if owner in owners]
+    others = owners.difference(hues)
+    return (*entries, (0, "nobody yet" if others == {""} else "others")) if others and entries else tuple(entries)
 
 
 def _draw_closed_group(lookup: Lookup, group_id: str, hues: Mapping[str, int]) -> Box:

@@ -225,7 +225,7 @@ def _name_use_case(lookup: Lookup, use_case_id: str) -> Inlines:
 
 def describe_stop(stop: int, count: int) -> str:
     """Say at which step a use case stops."""
-    return f"at once, of {count} steps" if stop == 1 else f"at step {stop} of {count}"
+    return f"at once, of {count_noun(count, 'step')}" if stop == 1 else f"at step {stop} of {count}"
 
 
 def make_use_case_waterfall(lookup: Lookup, impact: PartnerImpact) -> Waterfall | None:

@@ -28,13 +28,14 @@ from archgen.views.sequences.sequence_charts import (
 
 MOST_LIFELINES = 8
 """Up to so many take part each has a line of its own."""
-_CARD_WIDTH, _CARD_HEIGHT, _ROW_HEIGHT = 140.0, 37.0, 58.0
-_LANE_MARGIN, _LANE_GAP = 9.0, 4.0
-_WORDS = 33
-"""Characters of a line of words on a card."""
+_CARD_WIDTH, _PERSON_WIDTH, _CARD_HEIGHT, _ROW_HEIGHT = 104.0, 72.0, 46.0, 67.0
+_LANE_MARGIN, _LANE_GAP = 5.0, 3.0
+_TIME_WIDTH = 40.0
+_LETTER_WIDTH, _BOLD_WIDTH = 4.3, 4.5
+"""The mean width of a letter of a card's words and of its title."""
 _MOST_TRIED_LANES = 6
 """Of so many lanes all orders are tried, of more only exchanges."""
-_LIST_ROW, _LIST_LANE, _LIST_WIDTH = 14.0, 13.0, 440.0
+_LIST_ROW, _LIST_LANE, _LIST_WIDTH, _LIST_NAMES = 14.0, 13.0, 530.0, 200.0
 
 
 @dataclass(frozen=True, slots=True)
@@ -102,6 +103,10 @@ def draw_lane_sheets(lookup: Lookup, use_case_id: str) -> tuple[Sheet, ...]:
 def choose_sequences(lookup: Lookup, chart: SequenceChart) -> tuple[SequenceChart | Sheet, ...]:
     """Return a sequence as it is, or with lanes where many take part."""
     return draw_lane_sheets(lookup, chart.id.removeprefix(CHART_PREFIX)) or (chart,)
+
+
+def _find_card_width(lane: str) -> float:
+    return _PERSON_WIDTH if lane[0] == "\0" else _CARD_WIDTH
 
 
 def _find_lane(lookup: Lookup, use_case: UseCase, end: StepEnd) -> str:
@@ -185,8 +190,8 @@ class _Drawing:
         lefts, places, width = self._place_cards(cards)
         rows = 1 + max(card.row for card in cards)
         bars, texts = self._draw_lanes(lefts, rows)
-        for card, (x, y) in zip(cards, places, strict=True):
-            card_bars, card_texts = self._draw_card(card, x, y)
+        for card, place in zip(cards, places, strict=True):
+            card_bars, card_texts = self._draw_card(card, *place)
             bars += card_bars
             texts += card_texts
         lines = [line for at, link in enumerate(links) for line in self._draw_link(at, *link, cards, places, lefts)]
@@ -202,8 +207,8 @@ class _Drawing:
 
     def _place_cards(
         self, cards: Sequence[_Card]
-    ) -> tuple[dict[str, tuple[float, float]], list[tuple[float, float]], float]:
-        """Return left and width of each lane, the left upper corner of each card, and the width of all lanes."""
+    ) -> tuple[dict[str, tuple[float, float]], list[tuple[float, float, float]], float]:
+        """Return left and width of each lane, the left upper corner and the width of each card, and the width of all lanes."""
         side_by_side: dict[tuple[str, int], int] = {}
         for card in cards:
             key = (self.lane_of[card.end.participant], card.row)
@@ -212,7 +217,7 @@ class _Drawing:
         x = 0.0
         for lane in self.lanes:
             count = max((number for (name, _), number in side_by_side.items() if name == lane), default=1)
-            width = count * (_CARD_WIDTH + _LANE_MARGIN) + _LANE_MARGIN
+            width = count * (_find_card_width(lane) + _LANE_MARGIN) + _LANE_MARGIN
             lefts[lane] = (x, width)
             x += width + _LANE_GAP
         seen: dict[tuple[str, int], int] = {}
@@ -222,8 +227,10 @@ class _Drawing:
             at, number = seen.get(key, 0), side_by_side[key]
             seen[key] = at + 1
             left, width = lefts[key[0]]
-            total = number * (_CARD_WIDTH + _LANE_MARGIN) - _LANE_MARGIN
-            places.append((left + (width - total) / 2 + at * (_CARD_WIDTH + _LANE_MARGIN), card.row * _ROW_HEIGHT + 12))
+            card_width = _find_card_width(key[0])
+            total = number * (card_width + _LANE_MARGIN) - _LANE_MARGIN
+            card_left = left + (width - total) / 2 + at * (card_width + _LANE_MARGIN)
+            places.append((card_left, card.row * _ROW_HEIGHT + 12, card_width))
         return lefts, places, x
 
     def _draw_lanes(
@@ -254,17 +261,18 @@ class _Drawing:
             )
         return bars, texts
 
-    def _draw_card(self, card: _Card, x: float, y: float) -> tuple[list[SheetBar], list[SheetText]]:
+    def _draw_card(self, card: _Card, x: float, y: float, width: float) -> tuple[list[SheetBar], list[SheetText]]:
         is_outside = card.end.kind == "actor"
         title = name_participant(self.lookup, self.use_case, card.end)
         component = None if is_outside else self.lookup.architecture.find_component(card.end.participant)
         ref = f"component:{component.id}" if component else None
         tooltip = "\n".join(filter(None, (title, card.words, card.time)))
-        first, second = _wrap(card.words, _WORDS)
+        letters = int((width - 11) / _LETTER_WIDTH)
+        lines = _wrap(card.words, (letters, letters, letters - len(card.time)))
         bar = SheetBar(
             x,
             y,
-            _CARD_WIDTH,
+            width,
             _CARD_HEIGHT,
             "paper",
             "amber" if is_outside else "line",
@@ -272,13 +280,9 @@ class _Drawing:
             ref=ref,
             tooltip=tooltip,
         )
-        texts = [SheetText(x + 7, y + 9, cut_text(title, 19 if card.time else 25), 8.5, bold=True)]
-        texts += [SheetText(x + _CARD_WIDTH - 6, y + 9, card.time, 8, side="right", ink="muted")] if card.time else []
-        texts += [
-            SheetText(x + 7, y + 19.5 + at * 9.5, words, 8, ink="muted")
-            for at, words in enumerate((first, second))
-            if words
-        ]
+        texts = [SheetText(x + 6, y + 9, cut_text(title, int((width - 11) / _BOLD_WIDTH)), 8, bold=True)]
+        texts += [SheetText(x + width - 6, y + 38.5, card.time, 8, side="right", ink="muted")] if card.time else []
+        texts += [SheetText(x + 6, y + 19.5 + at * 9.5, words, 8, ink="muted") for at, words in enumerate(lines)]
         return [bar], texts
 
     def _draw_link(  # noqa: PLR0913, PLR0917 - two cards and where things stand
@@ -287,12 +291,12 @@ class _Drawing:
         tail: int,
         head: int,
         cards: Sequence[_Card],
-        places: Sequence[tuple[float, float]],
+        places: Sequence[tuple[float, float, float]],
         lefts: Mapping[str, tuple[float, float]],
     ) -> Iterator[SheetLine]:
         """Yield the line to what follows: below its row to the side, past other rows beside the cards of the lane."""
-        (x, y), (to_x, to_y) = places[tail], places[head]
-        x, to_x, start = x + _CARD_WIDTH / 2, to_x + _CARD_WIDTH / 2, y + _CARD_HEIGHT
+        (x, y, width), (to_x, to_y, to_width) = places[tail], places[head]
+        x, to_x, start = x + width / 2, to_x + to_width / 2, y + _CARD_HEIGHT
         level = start + 5 + (number % 3) * 3.5
         if cards[head].row == cards[tail].row + 1:
             middle = [(x, level), (to_x, level)] if x != to_x else []
@@ -315,7 +319,7 @@ class _Drawing:
         for row, done in enumerate(dones):
             y = row * _ROW_HEIGHT + 12 + _CARD_HEIGHT / 2
             texts.append(SheetText(left, y - 4, _write_time(done), bold=True))
-            bars += [SheetBar(left, y + 4, max(1.0, 70 * float(done / total)), 5)] if done else []
+            bars += [SheetBar(left, y + 4, max(1.0, _TIME_WIDTH * float(done / total)), 5)] if done else []
         return bars, texts
 
     def _sum_rows(self) -> list[Fraction | None]:
@@ -364,10 +368,19 @@ class _Drawing:
             }
             title = f"{names[0]} → {names[1]}" if is_begin else names[1]
             texts.append(SheetText(left, y, f"{each.step.number}", 8, side="left", ink="muted"))
-            texts.append(SheetText(left + 14, y, cut_text(title, 30), 8, bold=True, tooltip=" → ".join(names)))
+            texts.append(
+                SheetText(
+                    left + 14,
+                    y,
+                    cut_text(title, int((_LIST_NAMES - 20) / _BOLD_WIDTH)),
+                    8,
+                    bold=True,
+                    tooltip=" → ".join(names),
+                )
+            )
             words = " ".join((step.say or "").split())
-            room = int((_LIST_WIDTH - 90 - left - 165) / 4.4)
-            texts.append(SheetText(left + 160, y, cut_text(words, room), 8, ink="muted", tooltip=words))
+            room = min(44, int((_LIST_WIDTH - 90 - left - _LIST_NAMES) / _LETTER_WIDTH))
+            texts.append(SheetText(left + _LIST_NAMES, y, cut_text(words, room), 8, ink="muted", tooltip=words))
             if time := self._write_step_time(each):
                 texts.append(SheetText(_LIST_WIDTH - 52, y, time, 8, side="right"))
             if each.done:
@@ -380,9 +393,8 @@ class _Drawing:
             for each in self.placed
             for end in (each.step.step.source, each.step.step.target)
         ]
-        notes = [
-            f"{count_noun(len(self.placed), 'step')}, {len(dict.fromkeys(names))} take part; what stands in one row happens at the same time."
-        ]
+        rows = "" if suffix else "; what stands in one row happens at the same time"
+        notes = [f"{count_noun(len(self.placed), 'step')}, {len(dict.fromkeys(names))} take part{rows}."]
         total = _shorten(describe_total(self.lookup, self.use_case.id))
         done = self._sum_rows()[-1]
         if done:
@@ -426,10 +438,14 @@ def _shorten(text: str) -> str:
     return shorten_text(text)
 
 
-def _wrap(text: str, width: int) -> tuple[str, str]:
-    """Cut a text into two lines at a blank; what is longer ends in an ellipsis."""
-    if len(text) <= width:
-        return text, ""
-    at = text.rfind(" ", 0, width + 1)
-    at = at if at > 0 else width
-    return text[:at], cut_text(text[at:].strip(), width)
+def _wrap(text: str, widths: Sequence[int]) -> Iterator[str]:
+    """Cut a text into lines at blanks; what is longer than all of them ends in an ellipsis."""
+    for width in widths[:-1]:
+        if len(text) <= width:
+            yield text
+            return
+        at = text.rfind(" ", 0, width + 1)
+        at = at if at > 0 else width
+        yield text[:at]
+        text = text[at:].strip()
+    yield cut_text(text, widths[-1])

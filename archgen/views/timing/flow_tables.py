@@ -239,7 +239,7 @@ def make_unjudged_blocks(lookup: Lookup, activities: Sequence[Activity]) -> Iter
         return
     lead = "On these inputs no deadline rests. What a chain from the farthest sensor would say:"
     yield Paragraph(inline_text.to_inlines(lead))
-    yield Bullets(tuple(element_references.link_names(lookup.architecture, f"{text}.") for _, text in found))
+    yield Bullets(tuple(_link_line(lookup, text) for _, text in found))
     ways_by_name: dict[str, UnjudgedWay] = {}
     for way in (way for way, _ in found if way.duration is not None):
         name = f"{way.through[0]}_to_{way.through[-1]}".replace(".", "_")
@@ -251,6 +251,15 @@ def make_unjudged_blocks(lookup: Lookup, activities: Sequence[Activity]) -> Iter
         inline_text.message_to_inlines("The lines that make chains of them; a `deadline` is yours to choose:")
     )
     yield Markdown("```yaml\nchains:\n" + "\n".join(lines) + "\n```")
+
+
+def _link_line(lookup: Lookup, text: str) -> Inlines:
+    """Link the elements that a line names; the port that it begins with may be called as something else is."""
+    port, colon, rest = text.partition(": ")
+    return (
+        *inline_text.message_to_inlines(f"{port}{colon}"),
+        *element_references.link_names(lookup.architecture, f"{rest}."),
+    )
 
 
 def _write_chain(lookup: Lookup, name: str, way: UnjudgedWay) -> Iterator[str]:

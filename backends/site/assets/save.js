@@ -1,4 +1,4 @@
-// Saves what a picture or the map shows: an SVG that stands alone, its colours written into it, or a PNG of it.
+// Saves what a picture or the map shows: an SVG that stands alone, its colours and its font written into it, or a PNG of it.
 "use strict";
 globalThis.archgenSavePicture = (function () {
   const SHAPES = ["circle", "ellipse", "line", "path", "polygon", "polyline", "rect", "text", "tspan"];
@@ -6,6 +6,7 @@ globalThis.archgenSavePicture = (function () {
   const TEXT_PROPERTIES = ["font-family", "font-size", "font-weight", "font-style", "text-anchor", "text-decoration-line"];
   const MAX_PIXELS = 16e6; // what browsers surely draw
   const SCALE = 2;
+  const facesAddress = new URL("fonts.js", document.currentScript.src).href;
 
   function shape(name, attributes, ...children) {
     const made = document.createElementNS("http://www.w3.org/2000/svg", name);
@@ -25,7 +26,7 @@ globalThis.archgenSavePicture = (function () {
     if (SHAPES.includes(node.localName)) {
       const isText = node.localName === "text" || node.localName === "tspan";
       for (const name of isText ? [...PROPERTIES, ...TEXT_PROPERTIES] : PROPERTIES) made.setAttribute(name, style.getPropertyValue(name));
-      // As wide as here: who opens it may lack the font.
+      // As wide as here: programs that know no fonts inside of pictures may lack this one.
       if (node.localName === "text" && node.textContent) {
         made.setAttribute("textLength", Math.round(node.getComputedTextLength() * 10) / 10);
         made.setAttribute("lengthAdjust", "spacingAndGlyphs");
@@ -38,11 +39,30 @@ globalThis.archgenSavePicture = (function () {
     return made;
   }
 
-  function makeSvg(layers, bounds, ground) {
+  function readFaces() {
+    if (globalThis.archgenFaces) return Promise.resolve();
+    return new Promise((done, failed) => {
+      document.head.append(Object.assign(document.createElement("script"), { src: facesAddress, onload: done, onerror: failed }));
+    });
+  }
+
+  // The faces that have any of the letters.
+  function chooseFaces(text) {
+    const codes = [...new Set(text)].map((letter) => letter.codePointAt(0));
+    const holds = (range) => {
+      const [first, last = first] = range.split("-").map((code) => parseInt(code, 16));
+      return codes.some((code) => first <= code && code <= last);
+    };
+    return archgenFaces.filter(([ranges]) => ranges.some(holds)).map(([, face]) => face).join("");
+  }
+
+  async function makeSvg(layers, bounds, ground) {
+    await readFaces();
     const [x, y] = [bounds.left, bounds.top];
     const width = Math.ceil(bounds.right - x), height = Math.ceil(bounds.bottom - y);
     const svg = shape("svg", { xmlns: "http://www.w3.org/2000/svg", width, height, viewBox: `${Math.floor(x)} ${Math.floor(y)} ${width} ${height}` },
       shape("rect", { x: Math.floor(x), y: Math.floor(y), width, height, fill: ground }), ...layers.map(copy).filter(Boolean));
+    svg.prepend(shape("style", {}, chooseFaces(svg.textContent)));
     return { text: new XMLSerializer().serializeToString(svg), width, height };
   }
 
@@ -54,7 +74,7 @@ globalThis.archgenSavePicture = (function () {
   }
 
   return async function savePicture(layers, bounds, ground, name, format) {
-    const { text, width, height } = makeSvg(layers, bounds, ground);
+    const { text, width, height } = await makeSvg(layers, bounds, ground);
     const address = "data:image/svg+xml;charset=utf-8," + encodeURIComponent(text);
     if (format === "svg") return offer(address, name + ".svg");
     const scale = Math.min(SCALE, Math.sqrt(MAX_PIXELS / (width * height)));

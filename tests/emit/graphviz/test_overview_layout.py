@@ -9,7 +9,7 @@ from typing import Literal
 import pytest
 
 from archgen import pipeline
-from archgen.emit.graphviz import graph_drawing
+from archgen.emit.graphviz import graph_drawing, palette
 from archgen.emit.graphviz.label_places import sample_line
 from archgen.emit.graphviz.line_crossings import count_crossings
 from archgen.emit.graphviz.overview_layout import lay_out_overview
@@ -96,4 +96,4 @@ def test_squares_of_many_members_stay_in_their_box(count: int) -> None:
     (part,) = (part for part in scene.parts if part.kind == "box")
     assert part.width < 140
     label = part.attributes["label"]
-    assert label.count('BGCOLOR="#0072b2"') == (count if count < 26 else 1)
+    assert label.count(f'BGCOLOR="{palette.PARTNER_HUES[0]}"') == (count if count < 26 else 1)

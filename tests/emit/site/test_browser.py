@@ -203,6 +203,8 @@ def test_a_picture_can_be_looked_at_closely(visit: OpenPage, tmp_path: Path) -> 
         download.value.save_as(tmp_path / form)
     text = (tmp_path / "SVG").read_text("utf-8")
     assert all(word not in text for word in ("<a", "class=", "var(", "href"))
+    # Whoever opens it may lack the font: it is inside, of its alphabets those that occur.
+    assert text.count("@font-face{font-family:Inter;font-weight:100 900;src:url(data:font/woff2;base64,d09GMg") == 1
     assert text.count("textLength=") == text.count("<text")
     # A picture of its own keeps the room, colours and words that it has in the page.
     page.goto((tmp_path / "SVG").rename(tmp_path / "saved.svg").as_uri())

@@ -69,3 +69,30 @@ def test_a_wider_window_has_tables_again(page: BrowserPage, example: Path) -> No
     assert page.evaluate("getComputedStyle(document.querySelector('tbody tr')).display") == "flex"
     page.set_viewport_size({"width": 1200, "height": 800})
     assert page.evaluate("getComputedStyle(document.querySelector('tbody tr')).display") == "table-row"
+
+
+@pytest.mark.parametrize(("width", "has_lanes"), [(1440, True), (1024, False), (390, False)])
+def test_lanes_are_shown_whole_or_as_a_list(browser: Browser, example: Path, width: int, *, has_lanes: bool) -> None:
+    opened = browser.new_context(viewport={"width": width, "height": 900}).new_page()
+    opened.goto(f"file://{example}/use_cases/uc-4.html")
+    lanes, steps = opened.locator(".sequence .canvas").all()
+    assert (lanes.is_visible(), steps.is_visible()) == (has_lanes, not has_lanes)
+    shown = lanes if has_lanes else steps
+    # On a telephone the list keeps a size that can be read.
+    assert shown.evaluate("box => box.scrollWidth <= box.clientWidth") == (width > 600)
+    assert shown.get_attribute("tabindex") == "0"
+    opened.context.close()
+
+
+def test_a_word_of_any_length_widens_no_card(browser: Browser, example: Path) -> None:
+    opened = browser.new_context(viewport={"width": 1440, "height": 900}).new_page()
+    for path in ("index.html", "late/forth.html", "todo/tum.html"):
+        opened.goto(f"file://{example}/{path}")
+        opened.evaluate(
+            "document.querySelectorAll('.card tbody td:first-child').forEach(cell => cell.append('W'.repeat(90)))"
+        )
+        boxes = "[...document.querySelectorAll('.card .scroll')]"
+        assert opened.evaluate(f"{boxes}.filter(box => box.scrollWidth > box.clientWidth + 1).length") == 0
+        tallest = "Math.max(...[...document.querySelectorAll('.card tbody tr')].map(row => row.offsetHeight))"
+        assert opened.evaluate(tallest) < 500
+    opened.context.close()

@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+from fractions import Fraction
+
 import pytest
 
-from archgen.timing.chains.chain_advice import advise_on_chain
+from archgen.timing.chains.chain_advice import _write_least, advise_on_chain
 from archgen.timing.chains.chain_bounds import bound_all_chains
 from archgen.timing.run_analysis import analyse_architecture
+from archgen.views.short_figures import shorten_text
 from tests.timing.random_systems import architecture
 from tests.timing.sketches import sketch
 
@@ -95,3 +98,9 @@ def test_the_sentences_follow_from_the_largest_part(
     # Nothing is advised that was not analysed.
     assert not first_step or said[2]
     assert first_step or not any(said[2:])
+
+
+def test_what_is_known_stays_true_where_it_is_shown_with_fewer_digits() -> None:
+    assert shorten_text(f"What is known of it adds up to {_write_least(Fraction(31_946_000_000))}") == (
+        "What is known of it adds up to >= 31.9 s"
+    )

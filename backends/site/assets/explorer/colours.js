@@ -13,6 +13,9 @@ archgenExplorer.makeColours = function (model) {
   const PERIODS = [...model.names.keys()].filter((name) => name.startsWith("period:")).map((name) => name.slice(7));
   const SEVERITIES = { error: "an error", warning: "a warning", note: "a note" };
   const HUES = 10;
+  // As in the overview: by the order in which the project declares its partners, so that whoever is added changes no colour.
+  const PARTNERS = [...model.names.keys()].filter((name) => name.startsWith("owner:")).map((name) => name.slice(6));
+  const PARTNER_HUES = 9;
 
   const nodesOf = (member) => (member.kind === "node" ? [member] : member.nodes.map((at) => model.nodes[at]));
   const componentsOf = (member) => (member.kind === "node" ? member.components.map((at) => model.components[at]) : [member]);
@@ -98,6 +101,10 @@ archgenExplorer.makeColours = function (model) {
     if (key === "period") return "period-" + value.replaceAll("_", "-");
     if (SPECIAL[key]) return "hue-" + (SPECIAL[key][value] ?? "none");
     if (value === "") return "hue-none";
+    if (key === "owner") {
+      const place = PARTNERS.indexOf(value) + 1;
+      return place > 0 && place <= PARTNER_HUES ? `partner-${place}` : "hue-rest";
+    }
     const at = order.filter((each) => each !== "").indexOf(value);
     return at < HUES - 1 ? `hue-${at + 1}` : "hue-rest";
   }
