@@ -27,6 +27,7 @@ from archgen.model.message_types import ConceptualType
 from archgen.schema import normalise_document, validate_document
 from archgen.syntax import yaml_parser
 from tests import property_sizes
+from tests.bounded_waits import bound_waits
 from tests.linking import link_table
 from tests.outside_tools import LATER_MARKS, TOOL_MARKS, ToolHiding, describe_left_out, list_tool_marks
 from tests.running import RAMCIP, REVISION, archgen, made_once
@@ -102,6 +103,7 @@ def pytest_configure(config: pytest.Config) -> None:
         os.environ["XDG_CACHE_HOME"] = cache_folder
         config.add_cleanup(lambda: shutil.rmtree(cache_folder, ignore_errors=True))
     property_sizes.choose_profile(config)
+    bound_waits()
     config.stash[_HIDING] = ToolHiding(Path(os.environ["XDG_CACHE_HOME"]) / "bare-commands")
     # It reads where the cache is.
     from tests import forked_templates, kept_workers

@@ -232,7 +232,7 @@ class ToolHiding:
                 self._refuse_tools(executable or (args if isinstance(args, str | bytes | os.PathLike) else args[0]))
             start_process(process, args, bufsize, executable, *others, **named)
 
-        subprocess.Popen.__init__ = start_allowed  # type: ignore[method-assign]
+        subprocess.Popen.__init__ = start_allowed  # type: ignore[assignment, method-assign]
 
     def _refuse_tools(self, path: str | bytes | os.PathLike[str]) -> None:
         # A path in full needs no search.
