@@ -24,7 +24,7 @@ ROOT = Path(__file__).resolve().parents[3]
 class CellReader:
     """Reads the cells of a page's tables: each piece of text with the address that it links to, if any.
 
-    For lxml, which reads a page in a tenth of the time that Python's own parser takes.
+    For lxml, which reads a page in a quarter of the time that Python's own parser takes.
     """
 
     def __init__(self) -> None:
@@ -55,9 +55,8 @@ class CellReader:
         if self._depth:
             self._text += data
 
-    def close(self) -> list[tuple[str, str | None]]:
-        """Return the pieces."""
-        return self.pieces
+    def close(self) -> None:
+        """End the page."""
 
     def _finish(self) -> None:
         if self._text.strip():
@@ -85,7 +84,10 @@ def cell_pieces(architecture_and_site: tuple[Architecture, FileTree]) -> CellPie
     pieces = {}
     for path, data in architecture_and_site[1].files.items():
         if path.endswith(".html"):
-            pieces[path] = etree.fromstring(data, etree.HTMLParser(target=CellReader(), encoding="utf-8"))
+            reader = CellReader()
+            parser = etree.HTMLParser(target=reader, encoding="utf-8")  # type: ignore[arg-type] # comments may be left out
+            etree.fromstring(data, parser)
+            pieces[path] = reader.pieces
     return pieces
 
 
