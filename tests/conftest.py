@@ -103,7 +103,9 @@ def pytest_configure(config: pytest.Config) -> None:
         os.environ["XDG_CACHE_HOME"] = cache_folder
         config.add_cleanup(lambda: shutil.rmtree(cache_folder, ignore_errors=True))
     property_sizes.choose_profile(config)
-    bound_waits()
+    # Who hands tests to workers waits for these as long as they take.
+    if hasattr(config, "workerinput") or not config.getoption("numprocesses", None):
+        bound_waits()
     config.stash[_HIDING] = ToolHiding(Path(os.environ["XDG_CACHE_HOME"]) / "bare-commands")
     # It reads where the cache is.
     from tests import forked_templates, kept_workers
