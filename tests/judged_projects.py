@@ -60,5 +60,6 @@ def _list_states(folder: Path) -> Iterator[tuple[str, int, int]]:
     for parent, folders, names in os.walk(folder if folder.is_dir() else folder.parent):
         folders[:] = [name for name in folders if name != "archgen-out"]
         for name in names:
-            state = (Path(parent) / name).stat()
-            yield os.path.join(parent, name), state.st_mtime_ns, state.st_size  # noqa: PTH118 - hundreds of paths
+            path = os.path.join(parent, name)  # noqa: PTH118 - hundreds of paths
+            state = os.stat(path)  # noqa: PTH116 - as above
+            yield path, state.st_mtime_ns, state.st_size
