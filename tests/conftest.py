@@ -4,12 +4,14 @@ from __future__ import annotations
 
 import gc
 import os
+import re
 import shutil
 import subprocess
 import sys
 import tempfile
 from collections import Counter
 from collections.abc import Callable, Iterator, Sequence
+from contextlib import suppress
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -25,6 +27,7 @@ from archgen.model.message_types import ConceptualType
 from archgen.schema import normalise_document, validate_document
 from archgen.syntax import yaml_parser
 from tests import property_sizes
+from tests.bounded_waits import bound_waits
 from tests.linking import link_table
 from tests.outside_tools import LATER_MARKS, TOOL_MARKS, ToolHiding, describe_left_out, list_tool_marks
 from tests.running import RAMCIP, REVISION, archgen, made_once
@@ -100,6 +103,9 @@ def pytest_configure(config: pytest.Config) -> None:
         os.environ["XDG_CACHE_HOME"] = cache_folder
         config.add_cleanup(lambda: shutil.rmtree(cache_folder, ignore_errors=True))
     property_sizes.choose_profile(config)
+    # Who hands tests to workers waits for these as long as they take.
+    if hasattr(config, "workerinput") or not config.getoption("numprocesses", None):
+        bound_waits()
     config.stash[_HIDING] = ToolHiding(Path(os.environ["XDG_CACHE_HOME"]) / "bare-commands")
     # It reads where the cache is.
     from tests import forked_templates, kept_workers
@@ -171,6 +177,24 @@ def pytest_terminal_summary(terminalreporter: pytest.TerminalReporter) -> None:
 def pytest_collection_finish() -> None:
     # Fourteen thousand tests stay until the end: nothing is found by looking through them for garbage again and again.
     gc.freeze()
+    # What a test leaves is small beside that; searched for as often as Python likes it would be a thirtieth of all time.
+    gc.set_threshold(100_000, 20, 20)
+
+
+_TEMPORARY_FOLDERS = Counter[str]()
+"""How many folders there are of each name."""
+
+
+@pytest.fixture
+def tmp_path(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """Make a folder as pytest's own fixture does, which looks for its number among those of all tests: a millisecond and more."""
+    name = re.sub(r"\W", "_", request.node.name)[:30]
+    while True:
+        folder = tmp_path_factory.getbasetemp() / f"{name}{_TEMPORARY_FOLDERS[name]}"
+        _TEMPORARY_FOLDERS[name] += 1
+        with suppress(FileExistsError):
+            folder.mkdir(0o700)
+            return folder
 
 
 @pytest.fixture(scope="session")

@@ -32,20 +32,22 @@ def judge_shipped(project: Path) -> CheckedProject:
 
 
 @contextmanager
-def judge_shipped_once() -> Iterator[None]:
-    """Have verbs judge a shipped project again only if it changed. Others they judge each time."""
-    with patch.object(pipeline, "check_project", _check_once):
+def judge_shipped_once(*others: Path) -> Iterator[None]:
+    """Have verbs judge a shipped project, and those in other folders that are given, again only if it changed."""
+    kept_folders = (*_SHIPPED_FOLDERS, *others)
+    with patch.object(pipeline, "check_project", functools.partial(_check_once, kept_folders)):
         yield
 
 
 def _check_once(
+    kept_folders: Sequence[Path],
     path: Path | None = None,
     version_cache: pipeline.VersionCache | None = None,
     variants: Sequence[str] | None = None,
 ) -> CheckedProject:
     folder = path.absolute() if path else Path.cwd()
     # A cache that the caller wants to have filled is none of ours.
-    if version_cache or not any(folder.is_relative_to(shipped) for shipped in _SHIPPED_FOLDERS):
+    if version_cache or not any(folder.is_relative_to(kept) for kept in kept_folders):
         return _check_project(path, version_cache, variants)
     key = (os.fspath(path) if path else None, Path.cwd(), tuple(variants) if variants else None, *_list_states(folder))
     if key not in _JUDGED:
@@ -58,5 +60,6 @@ def _list_states(folder: Path) -> Iterator[tuple[str, int, int]]:
     for parent, folders, names in os.walk(folder if folder.is_dir() else folder.parent):
         folders[:] = [name for name in folders if name != "archgen-out"]
         for name in names:
-            state = (Path(parent) / name).stat()
-            yield os.path.join(parent, name), state.st_mtime_ns, state.st_size  # noqa: PTH118 - hundreds of paths
+            path = os.path.join(parent, name)  # noqa: PTH118 - hundreds of paths
+            state = os.stat(path)  # noqa: PTH116 - as above
+            yield path, state.st_mtime_ns, state.st_size

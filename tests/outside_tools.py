@@ -8,6 +8,7 @@ their helpers. A test that runs such a program in another way fails, since the p
 from __future__ import annotations
 
 import dis
+import functools
 import importlib
 import json
 import os
@@ -206,7 +207,7 @@ class ToolHiding:
         for name in _BARE_COMMANDS:
             if (found := shutil.which(name)) and not (folder / name).exists():
                 (folder / name).symlink_to(found)
-        sys.addaudithook(self._refuse_tools)
+        self._watch_processes()
 
     def hide_tools(self, *, hides: bool) -> None:
         """Hide the programs from the test that comes next, or show them to it."""
@@ -214,10 +215,29 @@ class ToolHiding:
             self._is_hiding = hides
             os.environ["PATH"] = self._bare_path if hides else self._full_path
 
-    def _refuse_tools(self, event: str, arguments: tuple[object, ...]) -> None:
+    def _watch_processes(self) -> None:
+        # No audit hook: Python calls those also for each field that an object with slots is given, for a twentieth of all time.
+        start_process = subprocess.Popen.__init__
+
+        @functools.wraps(start_process)
+        def start_allowed(
+            process: subprocess.Popen[Any],
+            args: Any,  # noqa: ANN401 - whatever subprocess takes
+            bufsize: int = -1,
+            executable: Any = None,  # noqa: ANN401 - as above
+            *others: Any,  # noqa: ANN401 - as above
+            **named: Any,  # noqa: ANN401 - as above
+        ) -> None:
+            if not named.get("shell"):
+                self._refuse_tools(executable or (args if isinstance(args, str | bytes | os.PathLike) else args[0]))
+            start_process(process, args, bufsize, executable, *others, **named)
+
+        subprocess.Popen.__init__ = start_allowed  # type: ignore[assignment, method-assign]
+
+    def _refuse_tools(self, path: str | bytes | os.PathLike[str]) -> None:
         # A path in full needs no search.
-        if event == "subprocess.Popen" and self._is_hiding:
-            program = os.fsdecode(arguments[0]) if isinstance(arguments[0], str | bytes | os.PathLike) else ""
+        if self._is_hiding:
+            program = os.fsdecode(path)
             name = Path(program).name
             is_of_system = program.startswith(("/usr/", "/bin/", "/opt/")) and program != sys.executable
             if (is_of_system and name not in _BARE_COMMANDS) or name in _MARK_BY_TOOL or "/node_modules/" in program:

@@ -17,6 +17,8 @@ FULL_PROFILE = "full"
 QUICK_PROFILE = "quick"
 _QUICK_SHARE = 4
 """The quick profile tries one example of so many."""
+_QUICK_SEED_SHARE = 8
+"""`make test` tries one seed of so many: the others are tests of their own, and marked as slow."""
 
 # The same draws in each run: a pull request must not turn red over a fault that was there before it. New draws are for those
 # who look for such faults: `make properties`.
@@ -44,8 +46,8 @@ def count_examples(full_count: int) -> int:
 
 
 def list_seeds(full_count: int) -> list[int | pytest.ParameterSet]:
-    """Return the numbers below `full_count` for a test that draws by one: a quarter of them in `make test`, the others slow."""
-    quick_count = max(1, full_count // _QUICK_SHARE)
+    """Return the numbers below `full_count` for a test that draws by one: an eighth of them in `make test`, the others slow."""
+    quick_count = max(1, full_count // _QUICK_SEED_SHARE)
     return [
         *range(quick_count),
         *(pytest.param(seed, marks=pytest.mark.slow) for seed in range(quick_count, full_count)),

@@ -31,7 +31,7 @@ def archgen(
     # As wide as it must be, unless a test says otherwise: pytest's workers set COLUMNS.
     environment = {**os.environ, "COLUMNS": "", **(env or {}), "PYTHONPATH": path}
     done = subprocess.run(  # noqa: S603 - our own program
-        command, cwd=cwd, env=environment, input=stdin, capture_output=True, check=False, timeout=1800
+        command, cwd=cwd, env=environment, input=stdin, capture_output=True, check=False, timeout=800
     )
     return _demand_status(done, status)
 

@@ -26,6 +26,7 @@ from tests import hostile
 from tests.browser_pages import launch_chromium, sync_playwright
 from tests.emit.docx import inspection, judges
 from tests.findings import judges as servers
+from tests.judged_projects import judge_shipped_once
 from tests.property_sizes import mark_further_samples
 from tests.running import archgen_here, contents, made_once
 
@@ -67,7 +68,7 @@ def files(project: Path, ending: str) -> Iterator[tuple[str, bytes]]:
 
 def said(project: Path, *words: str, status: int = 0) -> str:
     """Run a verb that prints, in this process; nothing may reach a terminal that is more than text."""
-    with contextlib.chdir(project):
+    with contextlib.chdir(project), judge_shipped_once(project):
         done = CliRunner().invoke(verbs, words, prog_name="archgen")
     assert done.exit_code == status, (words, done.output[-500:], done.exception)
     assert hostile.controls(done.output.replace("\r\n", "\n")) == []
@@ -113,7 +114,7 @@ def test_a_baseline_holds_the_texts(project: Path, tmp_path: Path) -> None:
 def test_lists(sort: str, project: Path) -> None:
     assert not re.search(r"(?m)^\s*::", said(project, "list", "--of", sort))
     assert json.loads(said(project, "list", "--of", sort, "--format", "json")) is not None
-    with contextlib.chdir(project):
+    with contextlib.chdir(project), judge_shipped_once(project):
         text = CliRunner().invoke(verbs, ["list", "--of", sort, "--format", "csv"]).stdout_bytes.decode()
     rows = list(csv.reader(io.StringIO(text, newline="")))
     assert {len(row) for row in rows} == {len(rows[0])}

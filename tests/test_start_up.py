@@ -37,6 +37,7 @@ with open({file!r}, "w") as file:
 """
 
 
+SMALL_PROJECT = "archgen: 1\ngroups: {g: {components: {a: {outputs: {o: std_msgs/msg/Bool}}, b: {inputs: {i: a.o}}}}}\n"
 PROTOCOL = {"pygls", "lsprotocol", "cattrs", "mcp", "pydantic"}
 
 
@@ -69,18 +70,25 @@ def test_a_verb_imports_nothing_heavy_without_need(tmp_path: Path, words: tuple[
     "words", [("show", "g.a"), ("fmt",), ("rename", "a", "c", "--dry-run"), ("lsp", "--help"), ("mcp", "--help")]
 )
 def test_only_the_language_server_knows_its_protocol(tmp_path: Path, words: tuple[str, ...]) -> None:
-    text = "archgen: 1\ngroups: {g: {components: {a: {outputs: {o: std_msgs/msg/Bool}}, b: {inputs: {i: a.o}}}}}\n"
-    (tmp_path / "archgen.yaml").write_text(text, encoding="utf-8")
+    (tmp_path / "archgen.yaml").write_text(SMALL_PROJECT, encoding="utf-8")
     assert PROTOCOL & imported_modules(tmp_path, *words) == set()
 
 
-def test_build_needs_neither_ruamel_nor_networkx(tmp_path: Path) -> None:
-    text = "groups: {g: {components: {a: {outputs: {o: std_msgs/msg/Bool}}, b: {inputs: {i: a.o}}}}}\n"
-    (tmp_path / "archgen.yaml").write_text(f"archgen: 1\n{text}", encoding="utf-8")
-    modules = imported_modules(tmp_path, "build", "archgen.yaml", "-o", "out")
+def test_a_build_needs_neither_ruamel_nor_networkx_and_a_second_one_no_views(tmp_path: Path) -> None:
+    project = tmp_path / "robot"
+    project.mkdir()
+    (project / "archgen.yaml").write_text(SMALL_PROJECT, encoding="utf-8")
+    words = ("build", "robot", "-o", "out")
+    modules = imported_modules(tmp_path, *words)
     assert (tmp_path / "out/site/components/g.a.html").exists()
     assert (tmp_path / "out/report.docx").exists()
     assert ({"networkx", "ruamel.yaml"} | PROTOCOL) & modules == set()
+    assert "archgen.views.pages.site_pages" in modules
+    modules = imported_modules(tmp_path, *words)
+    rooms = ("archgen.bringup", "archgen.emit.docx", "archgen.emit.graphviz", "archgen.emit.site", "archgen.simulation")
+    views = {name for name in modules if name.startswith("archgen.views.")}
+    assert [name for name in sorted(modules) if name.startswith(rooms)] == []
+    assert views <= {"archgen.views.picture_shapes"}
 
 
 def test_the_baseline_is_written_without_ruamel(tmp_path: Path) -> None:
@@ -95,7 +103,8 @@ def test_a_new_project_is_written_by_ruamel(tmp_path: Path) -> None:
 
 
 def test_a_site_that_is_compared_with_nothing_imports_no_comparison(tmp_path: Path) -> None:
-    modules = imported_modules(tmp_path, "site", str(ROOT / "examples/first_robot"), "-o", "out")
+    (tmp_path / "archgen.yaml").write_text(SMALL_PROJECT, encoding="utf-8")
+    modules = imported_modules(tmp_path, "site", "archgen.yaml", "-o", "out")
     assert (tmp_path / "out/index.html").exists()
     rooms = ("archgen.compare", "archgen.views.changes", "archgen.timing.search")
     assert [name for name in modules if name.startswith(rooms)] == []
@@ -115,13 +124,3 @@ def test_a_check_imports_nothing_for_what_a_project_does_not_have(tmp_path: Path
     )
     assert [name for name in sorted(modules) if name.startswith(rooms)] == []
     assert HEAVY & modules == set()
-
-
-def test_a_build_of_what_nothing_changed_of_imports_no_views(tmp_path: Path) -> None:
-    words = ("build", str(ROOT / "examples/first_robot"), "-o", "out")
-    assert "archgen.views.pages.site_pages" in imported_modules(tmp_path, *words)
-    modules = imported_modules(tmp_path, *words)
-    rooms = ("archgen.bringup", "archgen.emit.docx", "archgen.emit.graphviz", "archgen.emit.site", "archgen.simulation")
-    views = {name for name in modules if name.startswith("archgen.views.")}
-    assert [name for name in sorted(modules) if name.startswith(rooms)] == []
-    assert views <= {"archgen.views.picture_shapes"}

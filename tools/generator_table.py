@@ -42,6 +42,7 @@ def _count_mean(files: list[Path]) -> str:
     return f"{sum(lines) / len(lines):.1f}" if lines else ""
 
 
+@cache
 def _find_modules(view: str) -> set[Path]:
     """Return the modules that a view for generators is made with: the one that makes it, and what that imports of its kind."""
     targets = {name: target for _, name, target in list_shipped_facts("views")}
@@ -57,8 +58,13 @@ def _find_modules(view: str) -> set[Path]:
         file = waiting.pop()
         if file not in found:
             found.add(file)
-            waiting += _list_imported(ast.parse(file.read_text(encoding="utf-8")))
+            waiting += _read_imports(file)
     return found
+
+
+@cache
+def _read_imports(file: Path) -> set[Path]:
+    return _list_imported(ast.parse(file.read_text(encoding="utf-8")))
 
 
 def _list_imported(tree: ast.AST) -> set[Path]:

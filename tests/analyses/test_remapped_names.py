@@ -47,6 +47,22 @@ def test_a_rule_is_told_once(derived: Derived, rules: str, found: list[str]) -> 
     assert find_rules(derived(ROBOT.format(rules=rules))) == found
 
 
+@pytest.mark.parametrize(
+    ("other", "severity"),
+    [
+        ("{status: existing, package: p, executable: e}", "note"),
+        ("{status: planned, package: p, executable: e}", "error"),
+        ("{status: existing, kind: program, command: [run]}", "error"),
+        ("{status: existing, package: p, executable: e, publishes: {/other: {message: std_msgs/msg/Bool}}}", "error"),
+    ],
+)
+def test_only_an_existing_node_of_which_nothing_is_known_may_write_what_is_missed(
+    derived: Derived, other: str, severity: str
+) -> None:
+    robot = ROBOT.format(rules="remaps: {/safety: /safety_raw}")
+    assert find_rules(derived(f"{robot}  other: {other}\n")) == [f"remapped-away {severity}"]
+
+
 def test_a_reader_that_follows_is_no_loss(derived: Derived) -> None:
     rules = "remaps: {/safety: /safety_raw}"
     reader = "subscribes: {i: /safety}"

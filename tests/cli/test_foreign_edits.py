@@ -73,8 +73,7 @@ def edit(top: Path, edits: Edits, mail: str = "who@nowhere.example") -> None:
         text = (top / name).read_text(encoding="utf-8") if (top / name).exists() else old
         assert old in text
         files[name] = text.replace(old, new)
-    repositories.commit(top, files)
-    repositories.git(top, "commit", "-q", "--amend", "--no-edit", f"--author=Somebody <{mail}>")
+    repositories.commit(top, files, author=f"Somebody <{mail}>")
 
 
 @pytest.fixture

@@ -14,9 +14,8 @@ def test_authors_are_those_that_the_commits_name(tmp_path: Path) -> None:
     base = repositories.git(top, "rev-parse", "HEAD")
     commits = []
     for file, mail in (("a.yaml", "ann@a.example"), ("re[v]iew/*.yaml", "bob@b.example"), (".mailmap", "x@x.example")):
-        repositories.commit(top, {file: f"Eve <eve@e.example> <{mail}>\n"})
-        repositories.git(top, "commit", "-q", "--amend", "--no-edit", f"--author=Somebody <{mail}>")
-        commits.append(repositories.git(top, "rev-parse", "HEAD"))
+        mails = {file: f"Eve <eve@e.example> <{mail}>\n"}
+        commits.append(repositories.commit(top, mails, author=f"Somebody <{mail}>"))
     found = find_repository(top)
     assert list_author_mails(found, base, "HEAD") == {"ann@a.example", "bob@b.example", "x@x.example"}
     assert list_author_mails(found, base, "HEAD", "re[v]iew/*.yaml") == {"bob@b.example"}

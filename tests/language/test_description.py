@@ -15,6 +15,8 @@ import yaml
 
 from tests.running import ROOT
 
+Description = Any
+"""A class of `tools/`, which are no package."""
 _WRONG_ATTRIBUTE = (
     "host.cores: `attribute` is the field that holds it where that is called otherwise, or a list of fields"
 )
@@ -27,6 +29,17 @@ def import_tool() -> Iterator[Callable[[str], ModuleType]]:
     sys.path.insert(0, folder)
     yield importlib.import_module
     sys.path.remove(folder)
+
+
+@pytest.fixture(scope="module")
+def shipped_description(import_tool: Callable[[str], ModuleType]) -> Description:
+    return import_tool("language_description").load_description()
+
+
+@pytest.fixture
+def description(shipped_description: Description) -> Description:
+    """Give a description to spoil."""
+    return copy.deepcopy(shipped_description)
 
 
 def test_generated_files_are_fresh(import_tool: Callable[[str], ModuleType]) -> None:
@@ -75,10 +88,9 @@ def test_generated_files_are_fresh(import_tool: Callable[[str], ModuleType]) -> 
     ],
 )
 def test_what_is_forgotten_is_told(
-    import_tool: Callable[[str], ModuleType], forget: Callable[[Any], object], fault: str
+    import_tool: Callable[[str], ModuleType], description: Description, forget: Callable[[Any], object], fault: str
 ) -> None:
     tool = import_tool("language_description")
-    description = copy.deepcopy(tool.load_description())
     assert list(tool.find_faults(description)) == []
     forget(description)
     assert fault in list(tool.find_faults(description))
@@ -108,9 +120,8 @@ def test_what_is_forgotten_is_told(
     ],
 )
 def test_what_a_comparison_cannot_do_without_is_told(
-    import_tool: Callable[[str], ModuleType], forget: Callable[[Any], object], fault: str
+    import_tool: Callable[[str], ModuleType], description: Description, forget: Callable[[Any], object], fault: str
 ) -> None:
-    description = copy.deepcopy(import_tool("language_description").load_description())
     find_faults = import_tool("language_comparison").find_comparison_faults
     assert list(find_faults(description)) == []
     forget(description)
@@ -137,10 +148,9 @@ def test_what_a_comparison_cannot_do_without_is_told(
     ],
 )
 def test_a_new_key_says_nothing_that_its_type_says(
-    import_tool: Callable[[str], ModuleType], said: str, facts: dict[str, dict[str, str]]
+    import_tool: Callable[[str], ModuleType], description: Description, said: str, facts: dict[str, dict[str, str]]
 ) -> None:
-    tool, comparison = import_tool("language_description"), import_tool("language_comparison")
-    description = copy.deepcopy(tool.load_description())
+    comparison = import_tool("language_comparison")
     before = comparison.list_key_facts(description, "host")
     description.kinds["host"]["keys"]["cells"] = yaml.safe_load(said)
     rows = comparison.list_key_facts(description, "host")
@@ -182,17 +192,18 @@ def test_a_word_of_elsewhere_means_one_key(import_tool: Callable[[str], ModuleTy
     ],
 )
 def test_what_is_wrong_about_the_record_is_told(
-    import_tool: Callable[[str], ModuleType], spoil: Callable[[Any], object], fault: str
+    import_tool: Callable[[str], ModuleType], description: Description, spoil: Callable[[Any], object], fault: str
 ) -> None:
     tool = import_tool("language_record")
-    record = copy.deepcopy(tool.load_record(import_tool("language_description").load_description()))
+    record = tool.load_record(description)
     spoil(record.own["parts"])
     assert list(tool.find_faults(record)) == [f"record.yaml: {fault}"]
 
 
-def test_a_key_is_in_the_record_unless_it_says_why_not(import_tool: Callable[[str], ModuleType]) -> None:
+def test_a_key_is_in_the_record_unless_it_says_why_not(
+    import_tool: Callable[[str], ModuleType], description: Description
+) -> None:
     tool = import_tool("language_record")
-    description = copy.deepcopy(import_tool("language_description").load_description())
     description.kinds["host"]["keys"]["voltage"] = {"type": "text", "says": "What it runs on."}
     record = tool.load_record(description)
     assert list(record.keys_of("host")) == [

@@ -24,8 +24,7 @@ ELEMENT = ("g.a", "title")
 
 def commit(top: Path, files: dict[str, str], mail: str) -> None:
     """Commit files as somebody."""
-    repositories.commit(top, files)
-    repositories.git(top, "commit", "-q", "--amend", "--no-edit", f"--author=Somebody <{mail}>")
+    repositories.commit(top, files, author=f"Somebody <{mail}>")
 
 
 @pytest.mark.parametrize("folder", ["", "robot"])

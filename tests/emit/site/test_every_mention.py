@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from html.parser import HTMLParser
 from pathlib import Path
 from posixpath import dirname, join, normpath
 
 import pytest
+from lxml import etree
 
 from archgen.emit.file_tree import FileTree
 from archgen.emit.site import build_site
@@ -21,25 +21,27 @@ from tests.judged_projects import judge_ramcip
 ROOT = Path(__file__).resolve().parents[3]
 
 
-class CellReader(HTMLParser):
-    """Reads the cells of a page's tables: each piece of text with the address that it links to, if any."""
+class CellReader:
+    """Reads the cells of a page's tables: each piece of text with the address that it links to, if any.
+
+    For lxml, which reads a page in a quarter of the time that Python's own parser takes.
+    """
 
     def __init__(self) -> None:
-        super().__init__()
         self.pieces: list[tuple[str, str | None]] = []
         self._depth, self._text = 0, ""
         self._address: str | None = None
 
-    def handle_starttag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
+    def start(self, tag: str, attributes: Mapping[str, str]) -> None:
         """Begin a cell, a link, or a new piece of one."""
         if tag in {"td", "dd"}:
             self._depth += 1
         if tag in {"a", "br", "code", "td", "dd", "span"} and not (tag in {"code", "span"} and self._address):
             self._finish()
         if tag == "a":
-            self._address = dict(attrs).get("href")
+            self._address = attributes.get("href")
 
-    def handle_endtag(self, tag: str) -> None:
+    def end(self, tag: str) -> None:
         """End a link or a cell; `wbr` has no end."""
         if tag in {"a", "td", "dd"} or (tag in {"code", "span"} and not self._address):
             self._finish()
@@ -48,10 +50,13 @@ class CellReader(HTMLParser):
         if tag in {"td", "dd"}:
             self._depth -= 1
 
-    def handle_data(self, data: str) -> None:
+    def data(self, data: str) -> None:
         """Add to the piece at hand."""
         if self._depth:
             self._text += data
+
+    def close(self) -> None:
+        """End the page."""
 
     def _finish(self) -> None:
         if self._text.strip():
@@ -80,7 +85,8 @@ def cell_pieces(architecture_and_site: tuple[Architecture, FileTree]) -> CellPie
     for path, data in architecture_and_site[1].files.items():
         if path.endswith(".html"):
             reader = CellReader()
-            reader.feed(data.decode())
+            parser = etree.HTMLParser(target=reader, encoding="utf-8")  # type: ignore[arg-type] # comments may be left out
+            etree.fromstring(data, parser)
             pieces[path] = reader.pieces
     return pieces
 

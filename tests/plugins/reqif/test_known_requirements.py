@@ -56,9 +56,9 @@ def test_a_long_way_takes_time_in_proportion() -> None:
     count = 50_000
     way = {f"n{n}": {f"n{n + 1}": None} for n in range(count)}
     way[f"n{count}"] = {"n0": None}
-    begin = time.monotonic()
+    begin = time.process_time()
     assert cut_circles(way) == ((f"n{count}", "n0"),)
-    assert time.monotonic() - begin < 20
+    assert time.process_time() - begin < 20
 
 
 def document(*entries: ReqifObject) -> ReqifDocument:
