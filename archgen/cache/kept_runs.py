@@ -103,8 +103,7 @@ class RunKeeper:
         for number, text in said:
             output: Any = sys.stdout if number == 1 else sys.stderr
             output.buffer.write(text)
-            # Flushed when it was flushed then, so that both are in the same order where they go to one place.
-            if output.line_buffering:
+            if not text:
                 output.flush()
         return int(record["status"])
 
@@ -184,7 +183,8 @@ class RunKeeper:
 
     def _copy_words(self, number: int, stream: Any) -> io.TextIOWrapper:  # noqa: ANN401 - one with bytes behind it
         copying = cast("Any", _CopyingStream(stream, number, self._said))
-        return io.TextIOWrapper(copying, stream.encoding, stream.errors, line_buffering=stream.line_buffering)
+        buffering = {"line_buffering": stream.line_buffering, "write_through": stream.write_through}
+        return io.TextIOWrapper(copying, stream.encoding, stream.errors, **buffering)
 
 
 class _CopyingStream(io.RawIOBase):
@@ -208,6 +208,8 @@ class _CopyingStream(io.RawIOBase):
         return int(self._stream.buffer.write(data))
 
     def flush(self) -> None:
+        # Kept as an empty text, so that both streams are in the same order where they go to one place.
+        self._said.append((self._number, ""))
         self._stream.flush()
 
 
