@@ -94,8 +94,9 @@ def _run_verb() -> None:
 
 def _start_keeping() -> RunKeeper | None:
     """Say what an earlier run said, and end, where it would be the same again; return what keeps this one otherwise."""
-    # Where it is not POSIX, nothing tells when a file changed, whatever date it was given.
-    if os.name != "posix":
+    # Where it is not POSIX, nothing tells when a file changed, whatever date it was given. From Python 3.13 on
+    # `Path.glob` asks past the functions that are watched.
+    if os.name != "posix" or sys.version_info >= (3, 13):
         return None
     from archgen.cache.kept_runs import KEPT_VERBS, RunKeeper
 
