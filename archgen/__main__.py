@@ -7,6 +7,10 @@ import io
 import os
 import sys
 
+TYPE_CHECKING = False
+if TYPE_CHECKING:  # as type checkers read it, without loading `typing`
+    from archgen.cache.kept_runs import RunKeeper
+
 
 def main() -> None:
     """Run the command line. Exit status: 0 no errors, 1 errors found, 2 wrong usage or a failure, 130 and more stopped."""
@@ -55,24 +59,27 @@ def _run_verb() -> None:
     # A run is short, and its long-lived objects (trees, models) form no cycles: searching them for garbage again and
     # again costs a fifth of the run.
     gc.disable()
-    import click
-
     for name in ("stdout", "stderr"):
         if getattr(sys, name) is None:  # the caller closed it: discard what is written
             setattr(sys, name, open(os.devnull, "w", encoding="utf-8"))  # noqa: SIM115, PTH123 - until the process ends
+    if isinstance(sys.stdout, io.TextIOWrapper):
+        if sys.platform == "win32" and not sys.stdout.isatty():
+            sys.stdout.reconfigure(encoding="utf-8")  # whoever reads a pipe or file there reads JSON, CSV, YAML
+        sys.stdout.reconfigure(errors="replace")  # where it is not UTF-8: a question mark instead of no output at all
+    keeper = _start_keeping()
+    import click
+
     from archgen.cli import main as verbs
     from archgen.diagnostics.safe_text import make_visible
     from archgen.installed_plugins import PluginRefusedError
 
-    if isinstance(sys.stdout, io.TextIOWrapper):
-        if (
-            sys.platform == "win32" and not sys.stdout.isatty()
-        ):  # whoever reads a pipe or file there reads JSON, CSV, YAML
-            sys.stdout.reconfigure(encoding="utf-8")
-        sys.stdout.reconfigure(errors="replace")  # where it is not UTF-8: a question mark instead of no output at all
     try:
         try:
             sys.exit(verbs.main(prog_name="archgen", standalone_mode=False))
+        except SystemExit as end:
+            if keeper:
+                keeper.keep(end.code)
+            raise
         finally:
             # At its end Python looks through all objects for garbage, whether or not it did so before: a tenth of a check.
             gc.freeze()
@@ -85,6 +92,24 @@ def _run_verb() -> None:
         sys.exit(2)
     except click.Abort as abort:
         raise (abort.__cause__ if isinstance(abort.__cause__, KeyboardInterrupt) else KeyboardInterrupt) from None
+
+
+def _start_keeping() -> RunKeeper | None:
+    """Say what an earlier run said, and end, where it would be the same again; return what keeps this one otherwise."""
+    # Where it is not POSIX, nothing tells when a file changed, whatever date it was given. From Python 3.13 on
+    # `Path.glob` asks past the functions that are watched.
+    if os.name != "posix" or sys.version_info >= (3, 13):
+        return None
+    from archgen.cache.kept_runs import KEPT_VERBS, RunKeeper
+
+    if not {*sys.argv[1:2]} & {*KEPT_VERBS}:
+        return None
+    keeper = RunKeeper(sys.argv[1:])
+    status = keeper.repeat()
+    if status is not None:
+        sys.exit(status)
+    keeper.start_noting()
+    return keeper
 
 
 def _leave_quietly() -> None:

@@ -9,12 +9,12 @@ from __future__ import annotations
 
 import hashlib
 import json
-import os
 import zlib
 from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from archgen.cache import find_cache_path
 from archgen.cache.file_store import FileStore, digest_bytes
 from archgen.cache.program_stamp import stamp_writers
 
@@ -32,12 +32,8 @@ _MAX_REPORTS = 4
 
 def cache_folder() -> Path | None:
     """Return the cache folder for pictures, reports and stamps, None where the system has no place for it."""
-    base = os.environ.get("XDG_CACHE_HOME")
-    try:
-        return Path(base) / "archgen" if base else Path.home() / ".cache" / "archgen"
-    # `Path.home` raises this where the user has no home folder.
-    except RuntimeError:  # nobody's home
-        return None
+    path = find_cache_path()
+    return None if path is None else Path(path)
 
 
 def get_or_write_report(  # noqa: PLR0913 - all that a report depends on, and how to write it
