@@ -110,6 +110,16 @@ def test_a_site_that_is_compared_with_nothing_imports_no_comparison(tmp_path: Pa
     assert [name for name in modules if name.startswith(rooms)] == []
 
 
+def test_what_git_calls_for_each_file_that_it_merges_imports_no_comparison_of_projects(tmp_path: Path) -> None:
+    for name, added in (("base", ""), ("ours", ", c: {}"), ("theirs", ", d: {}")):
+        (tmp_path / name).write_text(SMALL_PROJECT.replace("}}}}}", f"}}}}{added}}}}}}}"), encoding="utf-8")
+    modules = imported_modules(tmp_path, "merge-driver", "base", "ours", "theirs", "archgen.yaml")
+    assert "c: {}, d: {}" in (tmp_path / "ours").read_text(encoding="utf-8")
+    assert "archgen.merge.slice_merge" in modules
+    rooms = ("archgen.bringup", "archgen.checking", "archgen.compare.kinds", "archgen.link")
+    assert [name for name in sorted(modules) if name.startswith(rooms)] == []
+
+
 def test_a_check_imports_nothing_for_what_a_project_does_not_have(tmp_path: Path) -> None:
     modules = imported_modules(tmp_path, "check", str(RAMCIP))
     rooms = (

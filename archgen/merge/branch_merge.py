@@ -13,8 +13,9 @@ from archgen.frozen import NamedTuple, dataclass, field, replace
 from archgen.git import GitError
 from archgen.git.merged_trees import MergeFolder, PathConflict, open_merge_folder
 from archgen.git.repository_lookup import look_up_tree
+from archgen.merge.double_renames import find_double_renames
 from archgen.merge.file_merge import merge_contents
-from archgen.merge.renamed_keys import find_double_renames, follow_renames
+from archgen.merge.renamed_keys import follow_renames
 from archgen.merge.slice_reading import read_normal_tree
 from archgen.merge.tree_merge import EMPTY_MAPPING, MergeConflictError, merge_values, read_merged_value
 from archgen.model.review_settings import BreakPolicy
