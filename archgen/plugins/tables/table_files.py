@@ -50,7 +50,7 @@ def read_sheets(
 def _read_office_file(name: str, data: bytes, diagnostics: list[Diagnostic]) -> list[TableSheet]:
     # Imported here: reading XML takes time to load, and most tables are plain text.
     from archgen.plugins.tables import word_tables, workbook_sheets
-    from archgen.plugins.tables.word_tables import OfficeFile, UnreadableOfficeFileError
+    from archgen.plugins.tables.office_files import OfficeFile, UnreadableOfficeFileError
 
     try:
         office_file = OfficeFile(data)

@@ -16,8 +16,8 @@ from lxml import etree
 
 from archgen.plugin.findings import Diagnostic, Severity
 from archgen.plugin.importing import Span
+from archgen.plugins.tables.office_files import OfficeFile, UnreadableOfficeFileError
 from archgen.plugins.tables.table_cells import MAX_CELLS, TableCell, TableSheet, clean_text
-from archgen.plugins.tables.word_tables import OfficeFile, UnreadableOfficeFileError
 
 _PERCENT_IDS, _DATE_IDS = (
     frozenset({9, 10}),

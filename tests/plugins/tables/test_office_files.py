@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import pytest
 
-from archgen.plugins.tables import word_tables
-from archgen.plugins.tables.word_tables import OfficeFile, UnreadableOfficeFileError
+from archgen.plugins.tables import office_files
+from archgen.plugins.tables.office_files import OfficeFile, UnreadableOfficeFileError
 from tests.workbooks import zip_parts
 
 
@@ -17,7 +17,7 @@ def test_a_damaged_file_is_refused(data: bytes) -> None:
 
 
 def test_a_part_that_unpacks_to_too_much_is_refused(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(word_tables, "MAX_OFFICE_BYTES", 1000)
+    monkeypatch.setattr(office_files, "MAX_OFFICE_BYTES", 1000)
     with pytest.raises(UnreadableOfficeFileError, match="is too large"):
         OfficeFile(zip_parts({"bomb.xml": f"<a>{' ' * 100_000}</a>"})).read_part("bomb.xml")
 

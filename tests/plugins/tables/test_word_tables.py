@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import pytest
 
-from archgen.plugins.tables.word_tables import OfficeFile, UnreadableOfficeFileError, read_word_tables
+from archgen.plugins.tables.office_files import OfficeFile, UnreadableOfficeFileError
+from archgen.plugins.tables.word_tables import read_word_tables
 from tests.workbooks import make_document, zip_parts
 
 

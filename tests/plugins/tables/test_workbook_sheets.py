@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from archgen.diagnostics.diagnostic import Diagnostic
-from archgen.plugins.tables.word_tables import OfficeFile, UnreadableOfficeFileError
+from archgen.plugins.tables.office_files import OfficeFile, UnreadableOfficeFileError
 from archgen.plugins.tables.workbook_sheets import CellFormats, read_workbook
 from tests.workbooks import make_workbook, zip_parts
 
