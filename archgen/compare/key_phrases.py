@@ -18,7 +18,7 @@ from archgen.frozen import NamedTuple
 from archgen.model.architecture import Architecture
 from archgen.model.start_up import DEFAULT_PHASE, PHASES
 
-_SEPARATOR = "---"
+_PART_SEPARATOR = "---"
 FieldPlace = tuple[int, str]
 """The part of a service or action, and the field's name."""
 
@@ -59,7 +59,7 @@ def read_field_types(lines: object) -> dict[FieldPlace, str]:
     types: dict[FieldPlace, str] = {}
     part = 0
     for line in map(str, lines) if isinstance(lines, (list, tuple)) else ():
-        if line == _SEPARATOR:
+        if line == _PART_SEPARATOR:
             part += 1
         else:
             field_type, _, name = line.rpartition(" ")

@@ -27,7 +27,7 @@ from archgen.syntax.yaml_tree import MappingEntry, MappingNode, ScalarNode, Sequ
 _ID = re.compile(r"[A-Za-z/~][A-Za-z0-9._/~-]*\Z", re.ASCII)
 """An id or the name of a topic."""
 _LOWER_PATH = re.compile(r"[a-z][a-z0-9_.]*\Z")
-_SEPARATOR = re.compile(r"(?:(?<!\s)\s++)?+(?:[,;]|->)\s*+|(?<!\s)\s++(?:and|&)\s++")
+_ENTRY_SEPARATOR = re.compile(r"(?:(?<!\s)\s++)?+(?:[,;]|->)\s*+|(?<!\s)\s++(?:and|&)\s++")
 _UNQUOTED_TEXT = re.compile(r"[A-Za-z0-9_/][\w ./@+-]*\Z", re.ASCII)
 _RANGE = re.compile(r"(\d{1,4})\s*(?:-|\.\.\.?)\s*(\d{1,4})\Z", re.ASCII)
 _ENDS = re.compile(r"([+-]?\d+(?:\.\d+)?)\s*(?:-|\.\.\.?|,|;|to)\s*([+-]?\d+(?:\.\d+)?)\Z", re.ASCII)
@@ -35,7 +35,7 @@ _NUMBER = re.compile(r"[+-]?\d+(?:\.\d+)?\Z", re.ASCII)
 _SHELL_SIGN = re.compile(r"[$&|;<>`*?~]")
 _MAX_RANGE = 16
 """A longer list of numbers is not written out."""
-_MAX_LENGTH = 1000
+_MAX_LIST_LENGTH = 1000
 """Longer text is no list of ids that somebody wrote by hand."""
 
 
@@ -45,10 +45,10 @@ def split_ids(text: str, schema_part: dict[str, Any]) -> list[str]:
     `schema_part` is that of the list. Where its entries may be sentences, every part must be one word; words without
     a comma between them are ids only if each of them is in lower case, or holds a digit where sentences are allowed.
     """
-    if len(text) > _MAX_LENGTH:
+    if len(text) > _MAX_LIST_LENGTH:
         return []
     pattern = resolve_part(schema_part.get("items", {})).get("pattern")
-    parts = [part for part in _SEPARATOR.split(text.strip().strip("[]")) if part]
+    parts = [part for part in _ENTRY_SEPARATOR.split(text.strip().strip("[]")) if part]
     if len(parts) == 1:
         parts = text.split()
         # `Head Camera` is a title, `head camera` perhaps two ids.
@@ -87,9 +87,9 @@ def _describe_range(text: str) -> str:
 def suggest_words(text: str) -> str:
     """Return a line for a shell as the list of words that was most likely meant, with what no shell will do."""
     try:
-        words = shlex.split(text[:_MAX_LENGTH])
+        words = shlex.split(text[:_MAX_LIST_LENGTH])
     except ValueError:  # a quote that is not closed
-        words = text[:_MAX_LENGTH].split()
+        words = text[:_MAX_LIST_LENGTH].split()
     note = "; no shell reads it" if _SHELL_SIGN.search(text) else ""
     return f"write its words as a list: `[{', '.join(map(_quote_entry, words))}]`{note}"
 

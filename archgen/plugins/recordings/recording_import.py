@@ -39,9 +39,9 @@ from archgen.plugins.recordings.trace_events import is_trace_line
 from archgen.plugins.recordings.trace_reading import read_trace
 
 BAG_KEY = "rosbag2_bagfile_information"
-_LATEST_VERSION = 9
-_MAX_BYTES = 16_000_000
-_MAX_DIGITS = 20
+_LATEST_METADATA_VERSION = 9
+_MAX_METADATA_BYTES = 16_000_000
+_MAX_COUNT_DIGITS = 20
 
 
 def read_bag_metadata(source: RecordingSource, names: RecordedNames, figures: RecordedFigures) -> None:
@@ -50,9 +50,11 @@ def read_bag_metadata(source: RecordingSource, names: RecordedNames, figures: Re
     if bag is None:
         return
     version = _read_count(bag.get("version"))
-    if version is None or version > _LATEST_VERSION:
+    if version is None or version > _LATEST_METADATA_VERSION:
         shown_version = "no number" if version is None else str(version)
-        message = f"the version of this file is {shown_version}; archgen knows those from 1 to {_LATEST_VERSION}"
+        message = (
+            f"the version of this file is {shown_version}; archgen knows those from 1 to {_LATEST_METADATA_VERSION}"
+        )
         figures.diagnostics.append(Diagnostic("wrong-value", message, bag.span, Severity.WARNING))
     duration = read_bag_duration(bag)
     if not duration:
@@ -82,9 +84,9 @@ def read_bag_duration(bag: MappingNode) -> int | None:
 def parse_bag(source: RecordingSource, figures: RecordedFigures) -> MappingNode | None:
     """Return what stands below the key of a bag, None for what is no YAML. Raise RecordingError."""
     source.stream.seek(0)
-    data = source.stream.read(_MAX_BYTES + 1)
-    if len(data) > _MAX_BYTES:
-        message = f"metadata.yaml has more than {_MAX_BYTES:,} bytes"
+    data = source.stream.read(_MAX_METADATA_BYTES + 1)
+    if len(data) > _MAX_METADATA_BYTES:
+        message = f"metadata.yaml has more than {_MAX_METADATA_BYTES:,} bytes"
         raise source.refuse(1, message, "give the file that rosbag2 wrote", "too-large")
     document, diagnostics = parse_yaml(source.name, data.decode("utf-8", "replace").removeprefix("\ufeff"))
     figures.diagnostics += diagnostics
@@ -112,7 +114,7 @@ def list_bag_topics(bag: MappingNode) -> Iterator[tuple[str, int, YamlNode, Mapp
 def _read_count(node: YamlNode | None) -> int | None:
     """Return a whole number that is not negative."""
     text = node.text if isinstance(node, ScalarNode) else ""
-    return int(text) if text.isascii() and text.isdecimal() and len(text) <= _MAX_DIGITS else None
+    return int(text) if text.isascii() and text.isdecimal() and len(text) <= _MAX_COUNT_DIGITS else None
 
 
 _READERS = {

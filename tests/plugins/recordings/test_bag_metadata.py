@@ -81,5 +81,5 @@ def test_a_broken_file_gives_nothing(tmp_path: Path, text: str) -> None:
 
 
 def test_a_file_that_is_too_large_is_refused(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(recording_import, "_MAX_BYTES", 100)
+    monkeypatch.setattr(recording_import, "_MAX_METADATA_BYTES", 100)
     assert list_problems(read(tmp_path, _bag())) == ["1 error: metadata.yaml has more than 100 bytes"]

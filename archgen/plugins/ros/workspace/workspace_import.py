@@ -42,10 +42,10 @@ from archgen.plugins.ros.workspace.program_reading import ProgramReader, ReadPro
 from archgen.plugins.ros.workspace.program_sources import WorkspaceFiles
 from archgen.plugins.ros.workspace.workspace_slices import make_slices
 
-_PACKAGES = frozenset({"rviz", "rviz2"})
-_FILE_OPTIONS = frozenset({"-d", "--display-config"})
-_MAX_DEPTH = 20
-_MESSAGES = {
+_RVIZ_PACKAGES = frozenset({"rviz", "rviz2"})
+_RVIZ_FILE_OPTIONS = frozenset({"-d", "--display-config"})
+_MAX_DISPLAY_DEPTH = 20
+_DISPLAY_MESSAGES = {
     **{name: f"sensor_msgs/msg/{name}" for name in ("FluidPressure", "Illuminance", "Image", "Imu", "LaserScan")},
     **{name: f"sensor_msgs/msg/{name}" for name in ("PointCloud", "PointCloud2", "Range", "RelativeHumidity")},
     **{name: f"geometry_msgs/msg/{name}" for name in ("AccelStamped", "PointStamped", "PoseArray", "TwistStamped")},
@@ -59,18 +59,18 @@ _MESSAGES = {
     "Temperature": "sensor_msgs/msg/Temperature",
     "WrenchStamped": "geometry_msgs/msg/WrenchStamped",
 }
-_TOOLS = {
+_TOOL_MESSAGES = {
     "PublishPoint": "geometry_msgs/msg/PointStamped",
     "SetGoal": "geometry_msgs/msg/PoseStamped",
     "SetInitialPose": "geometry_msgs/msg/PoseWithCovarianceStamped",
 }
-_TOPIC_KEYS = ("Topic", "Image Topic", "Marker Topic", "Description Topic")
+_DISPLAY_TOPIC_KEYS = ("Topic", "Image Topic", "Marker Topic", "Description Topic")
 
 
 def read_rviz(node: LaunchedNode, run: LaunchRun) -> ReadProgram | None:
     """Return what RViz reads and sends by its configuration; None for other programs, or where that is not at hand."""
-    files = [text for flag, text in pairwise(node.arguments) if flag in _FILE_OPTIONS]
-    path = run.files.find_file(files[0]) if files and node.package in _PACKAGES else None
+    files = [text for flag, text in pairwise(node.arguments) if flag in _RVIZ_FILE_OPTIONS]
+    path = run.files.find_file(files[0]) if files and node.package in _RVIZ_PACKAGES else None
     said = None if path is None else run.parameter_reader.read_mapping(path)
     manager = said.get("Visualization Manager") if said is not None else None
     if not isinstance(manager, Mapping):
@@ -84,7 +84,7 @@ def read_rviz(node: LaunchedNode, run: LaunchRun) -> ReadProgram | None:
     return ReadProgram((known_node,), is_ros_1=node.package == "rviz")
 
 
-def _list_members(holder: Mapping[str, Any], key: str) -> Iterator[tuple[str, Mapping[str, Any]]]:
+def _list_enabled(holder: Mapping[str, Any], key: str) -> Iterator[tuple[str, Mapping[str, Any]]]:
     """Yield displays or tools, each with the last word of its class; what is switched off does nothing."""
     members = holder.get(key)
     for member in members if isinstance(members, list) else ():
@@ -93,7 +93,7 @@ def _list_members(holder: Mapping[str, Any], key: str) -> Iterator[tuple[str, Ma
 
 
 def _read_topic(member: Mapping[str, Any]) -> str:
-    for key in _TOPIC_KEYS:
+    for key in _DISPLAY_TOPIC_KEYS:
         given = member.get(key)
         name = given.get("Value") if isinstance(given, Mapping) else given
         if isinstance(name, str) and name:
@@ -102,14 +102,14 @@ def _read_topic(member: Mapping[str, Any]) -> str:
 
 
 def _read_displays(holder: Mapping[str, Any], depth: int) -> Iterator[tuple[str, str, str]]:
-    for kind, display in _list_members(holder, "Displays"):
-        if kind == "Group" and depth < _MAX_DEPTH:
+    for kind, display in _list_enabled(holder, "Displays"):
+        if kind == "Group" and depth < _MAX_DISPLAY_DEPTH:
             yield from _read_displays(display, depth + 1)
         elif kind == "TF":
             yield from FIXED_ENDPOINTS["TransformListener"]
         elif (name := _read_topic(display)) and (kind != "RobotModel" or display.get("Description Source") == "Topic"):
-            is_packed = name.endswith("/compressed")
-            yield "subscribes", name, "sensor_msgs/msg/CompressedImage" if is_packed else _MESSAGES.get(kind, "")
+            message = _DISPLAY_MESSAGES.get(kind, "")
+            yield "subscribes", name, "sensor_msgs/msg/CompressedImage" if name.endswith("/compressed") else message
             if kind == "Camera":
                 folder, joint, _ = name.rpartition("/")
                 yield "subscribes", f"{folder}{joint}camera_info", IMAGE_TYPES[1]
@@ -119,12 +119,12 @@ def _read_displays(holder: Mapping[str, Any], depth: int) -> Iterator[tuple[str,
 
 
 def _read_tools(manager: Mapping[str, Any]) -> Iterator[tuple[str, str, str]]:
-    for kind, tool in _list_members(manager, "Tools"):
-        if kind in _TOOLS and (name := _read_topic(tool)):
-            yield "publishes", name, _TOOLS[kind]
+    for kind, tool in _list_enabled(manager, "Tools"):
+        if kind in _TOOL_MESSAGES and (name := _read_topic(tool)):
+            yield "publishes", name, _TOOL_MESSAGES[kind]
 
 
-_MAX_BYTES = 1_000_000
+_MAX_MESSAGE_BYTES = 1_000_000
 _FIELD_TYPE = re.compile(r"(?:([a-z][a-z0-9_]*)/)?(?:msg/)?([A-Z]\w*)")
 
 
@@ -157,7 +157,7 @@ def read_used_messages(
 
 def _read_message(path: Path, shown: str, message: str, account: ImportAccount, distro: str) -> dict[str, Any]:
     try:
-        text = read_bounded(path, _MAX_BYTES).decode("utf-8-sig", "replace")
+        text = read_bounded(path, _MAX_MESSAGE_BYTES).decode("utf-8-sig", "replace")
     except ForeignFileError as error:
         account.add_note("file", error.message, Span.of_file(shown))
         return {}

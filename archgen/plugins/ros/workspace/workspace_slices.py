@@ -19,9 +19,9 @@ from archgen.plugins.ros.ros_package.import_account import ImportAccount
 from archgen.plugins.ros.workspace.node_components import LIBRARY, NodeKnowledge, NodeWriter, WrittenNode
 from archgen.plugins.ros.workspace.program_sources import WorkspaceFiles
 
-_PLACES = ("CODEOWNERS", ".github/CODEOWNERS", "docs/CODEOWNERS", ".gitlab/CODEOWNERS")
-_MAX_BYTES = 1_000_000
-_GLOBS = frozenset("*?[")
+_CODEOWNERS_PLACES = ("CODEOWNERS", ".github/CODEOWNERS", "docs/CODEOWNERS", ".gitlab/CODEOWNERS")
+_MAX_CODEOWNERS_BYTES = 1_000_000
+_GLOB_SIGNS = frozenset("*?[")
 
 
 class CodeOwners:
@@ -60,14 +60,14 @@ class CodeOwners:
 
     def _read_rules(self, top: Path) -> list[tuple[str, tuple[str, ...]]] | None:
         if top not in self._rules:
-            files = (top / place for place in _PLACES)
+            files = (top / place for place in _CODEOWNERS_PLACES)
             file = next((file for file in files if file.is_file() and not file.is_symlink()), None)
             self._rules[top] = None if file is None else list(self._parse_file(file))
         return self._rules[top]
 
     def _parse_file(self, file: Path) -> Iterator[tuple[str, tuple[str, ...]]]:
         try:
-            text = read_bounded(file, _MAX_BYTES).decode("utf-8", "replace")
+            text = read_bounded(file, _MAX_CODEOWNERS_BYTES).decode("utf-8", "replace")
         except ForeignFileError as error:
             self._account.add_note("CODEOWNERS", error.message, error.span, error.help_line)
             return
@@ -83,7 +83,7 @@ def _names_folder(pattern: str, folder: str) -> bool:
     name = pattern.removesuffix("**").removesuffix("*").rstrip("/")
     if not name:
         return True
-    if _GLOBS & set(name):
+    if _GLOB_SIGNS & set(name):
         return False
     if "/" in name:
         return f"{folder}/".startswith(f"{name.lstrip('/')}/")
