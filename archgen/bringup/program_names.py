@@ -101,7 +101,8 @@ def group_by_program(architecture: Architecture, nodes: Iterable[Node]) -> dict[
 
 def index_endpoints(architecture: Architecture) -> dict[str, list[Endpoint]]:
     """Return what each node does over ROS, by the node's id."""
-    return group_pairs((endpoint.node, endpoint) for endpoint in architecture.endpoints if endpoint.medium == "ros")
+    # A plain dictionary: plug-ins have it, and to look for an id that no node has is a mistake.
+    return dict(group_pairs((each.node, each) for each in architecture.endpoints if each.medium == "ros"))
 
 
 def group_endpoints(

@@ -50,7 +50,9 @@ def test_all_who_ask_get_one_answer(tmp_path: Path) -> None:
 
 def test_a_program_of_one_node_knows_its_ports_alone(tmp_path: Path) -> None:
     architecture = read(tmp_path)
-    groups = group_endpoints([architecture.nodes["planner"]], index_endpoints(architecture))
+    endpoints = index_endpoints(architecture)
+    assert type(endpoints) is dict
+    groups = group_endpoints([architecture.nodes["planner"]], endpoints)
     names = {key: own_name for (_, _, key), own_name in choose_own_names(architecture, groups).items()}
     assert names == {"left_goal": "left_goal", "right_goal": "right_goal"}
     remaps = ProgramNames(architecture, 2).find_remaps(architecture.nodes["planner"])
