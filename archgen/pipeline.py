@@ -18,9 +18,7 @@ from archgen import project
 from archgen.checking.all_rules import SHIPPED_RULES, index_all_rules
 from archgen.checking.checked_project import CheckedProject
 from archgen.checking.codeowners_age import add_codeowners_age
-from archgen.checking.linked_project import PartMemory
-from archgen.checking.merged_project import merge_project
-from archgen.checking.pass_judging import (
+from archgen.checking.derived_projects import (
     UnknownVariantError,
     judge_in_variants,
     keep_variant_findings,
@@ -29,6 +27,8 @@ from archgen.checking.pass_judging import (
     stand_in_variants,
     transform_project,
 )
+from archgen.checking.linked_project import PartMemory
+from archgen.checking.merged_project import merge_project
 from archgen.diagnostics.diagnostic import Diagnostic
 from archgen.project import LoadedProject, ParsedSlices
 from archgen.timing.run_analysis import AnalysisMemory

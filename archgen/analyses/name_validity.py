@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Iterable, Iterator
 
-from archgen.derivation.wire.remap_rules import expand_name, find_name_fault, find_node_name_fault
+from archgen.derivation.wire.wire_names import expand_name, find_name_fault, find_node_name_fault
 from archgen.diagnostics.diagnostic import Diagnostic, Label, Severity
 from archgen.diagnostics.source_span import NO_SPAN, Span
 from archgen.model.architecture import Architecture

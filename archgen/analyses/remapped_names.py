@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator
 
 from archgen.derivation.ros_names import SHARED_TOPICS
-from archgen.derivation.wire.remap_rules import (
+from archgen.derivation.wire.wire_names import (
     ACTION_PARTS,
     NodeNames,
     RemapRule,

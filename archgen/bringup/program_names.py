@@ -9,7 +9,7 @@ from collections import Counter
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 
 from archgen.derivation.ros_names import shared_topic_names
-from archgen.derivation.wire.remap_rules import ACTION_PARTS, NodeNames, list_written_remaps
+from archgen.derivation.wire.wire_names import ACTION_PARTS, NodeNames, list_written_remaps
 from archgen.frozen import dataclass
 from archgen.grouping import group_pairs
 from archgen.model.architecture import Architecture

@@ -18,8 +18,8 @@ from archgen.bringup.start_commands import (
     list_transitions,
 )
 from archgen.bringup.wait_circles import StartWaits, group_by_waiting, keep_acyclic, name_container
-from archgen.derivation.wire.remap_rules import NodeNames
 from archgen.derivation.wire.running_state import find_environment
+from archgen.derivation.wire.wire_names import NodeNames
 from archgen.frozen import replace
 from archgen.grouping import group_pairs
 from archgen.model.architecture import Architecture

@@ -17,7 +17,7 @@ from archgen.link import mapping_values
 from archgen.model.agreed_terms import signature_file
 from archgen.model.architecture import Partner
 from archgen.model.element_ids import ElementFiles
-from archgen.model.review_settings import agreement_file
+from archgen.model.project_settings import agreement_file
 from archgen.syntax.yaml_tree import MappingNode, SequenceNode, YamlNode
 from archgen.views.partner_ownership import Ownership
 from archgen.views.partner_ownership import assign_ownership as sorted_out

@@ -333,7 +333,7 @@ def add_partner(name: str, title: str | None, reviewers: str | None, project: Pa
 def _add_agreement_file(checked_project: CheckedProject, name: str, title: str) -> None:
     """Write the file of a partner's agreements where the project is a folder; say what is left to do."""
     from archgen.emit import file_tree
-    from archgen.model.review_settings import agreement_file
+    from archgen.model.project_settings import agreement_file
     from archgen.products.editor_schema_marks import SCHEMA_FILE
     from archgen.project import PROJECT_FILE
     from archgen.start.start_templates import fill_agreements

@@ -19,7 +19,7 @@ from archgen.compare.review_facts import ReviewFacts
 from archgen.compare.version_pair import VersionPair
 from archgen.frozen import NamedTuple, dataclass, replace
 from archgen.model.architecture import Architecture
-from archgen.model.review_settings import AcceptedChange
+from archgen.model.project_settings import AcceptedChange
 
 _HASH_DIGITS = 6
 

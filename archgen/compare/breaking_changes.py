@@ -40,7 +40,7 @@ from archgen.compare.losses.weakened_words import find_weakened_words
 from archgen.compare.timing_pair import TimingPair, is_rewording
 from archgen.diagnostics.diagnostic import Severity
 from archgen.frozen import replace
-from archgen.model.review_settings import AcceptedChange, BreakPolicy, ReviewSettings
+from archgen.model.project_settings import AcceptedChange, BreakPolicy, ReviewSettings
 
 _LOSS_FINDERS = (
     find_lost_connections,

@@ -36,7 +36,7 @@ from archgen.diagnostics.diagnostic import Diagnostic, Severity
 from archgen.diagnostics.finding_identity import identify_finding, match_findings
 from archgen.frozen import NamedTuple, replace
 from archgen.model.architecture import Architecture
-from archgen.model.review_settings import AcceptedChange
+from archgen.model.project_settings import AcceptedChange
 from archgen.simulation.chain_witnesses import judge_chains
 from archgen.timing.analysis import Analysis, ChainResult
 from archgen.timing.figures.timing_values import UNKNOWN_VALUE, TimingValue

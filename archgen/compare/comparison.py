@@ -11,8 +11,8 @@ from archgen.compare.version_pair import VersionPair
 from archgen.diagnostics.diagnostic import Diagnostic, Severity
 from archgen.frozen import NamedTuple, dataclass, field
 from archgen.model.node import Qos
+from archgen.model.project_settings import BREAK_CATEGORIES, AcceptedChange, BreakCategory, BreakPolicy
 from archgen.model.quantity import Quantity
-from archgen.model.review_settings import BREAK_CATEGORIES, AcceptedChange, BreakCategory, BreakPolicy
 from archgen.timing.analysis import ChainResult
 from archgen.timing.chains.chain_verdicts import LimitState
 from archgen.timing.figures.timing_values import TimingValue

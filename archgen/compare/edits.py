@@ -19,7 +19,7 @@ from archgen.compare.reshaped_components import find_reshapings
 from archgen.compare.type_edits import find_type_edits
 from archgen.diagnostics.common_wording import join_words, keep_first
 from archgen.frozen import dataclass
-from archgen.model.review_settings import BREAK_CATEGORIES, BreakCategory
+from archgen.model.project_settings import BREAK_CATEGORIES, BreakCategory
 
 _MAX_FILES = 4
 """How many files one sentence names; the rest is counted."""

@@ -20,7 +20,7 @@ from archgen.compare.normal_values import ElementTitle, to_plain_data
 from archgen.compare.version_pair import ComparedElement, ElementKey, VersionPair
 from archgen.diagnostics.common_wording import join_words
 from archgen.model.graph_search import find_reachable
-from archgen.model.review_settings import agreement_file
+from archgen.model.project_settings import agreement_file
 
 
 def describe_element_change(change: Change, element: ComparedElement, versions: VersionPair) -> str:

@@ -25,8 +25,8 @@ from archgen.derivation.port_endpoints import (
     flow_of_use,
     index_writers,
 )
-from archgen.derivation.wire.remap_rules import NodeNames
 from archgen.derivation.wire.running_state import complete_states
+from archgen.derivation.wire.wire_names import NodeNames
 from archgen.frozen import dataclass, field, replace
 from archgen.model.architecture import Architecture
 from archgen.model.component import Component, Group, Input, Output

@@ -9,7 +9,7 @@ from collections import defaultdict
 from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 
 from archgen.derivation import ros_names
-from archgen.derivation.wire.remap_rules import NodeNames, WireName
+from archgen.derivation.wire.wire_names import NodeNames, WireName
 from archgen.frozen import dataclass, field, replace
 from archgen.grouping import group_pairs
 from archgen.model.architecture import Architecture

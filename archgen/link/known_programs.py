@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections import defaultdict
 from collections.abc import Iterator, Mapping, Sequence
 
-from archgen.derivation.wire.remap_rules import NodeNames
+from archgen.derivation.wire.wire_names import NodeNames
 from archgen.diagnostics.common_wording import join_words
 from archgen.diagnostics.diagnostic import Diagnostic, Rule, Severity
 from archgen.diagnostics.source_span import first_written_span

@@ -11,7 +11,7 @@ from collections.abc import Mapping
 
 from archgen.compose import ExpandedProject, expand_project, list_type_entries
 from archgen.compose.type_expressions import TypeExpression
-from archgen.derivation.wire.remap_rules import apply_launch_names
+from archgen.derivation.wire.wire_names import apply_launch_names
 from archgen.diagnostics.diagnostic import Diagnostic
 from archgen.diagnostics.source_span import NO_SPAN, Span
 from archgen.link import mapping_values

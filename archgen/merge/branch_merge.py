@@ -18,7 +18,7 @@ from archgen.merge.file_merge import merge_contents
 from archgen.merge.renamed_keys import follow_renames
 from archgen.merge.slice_reading import read_normal_tree
 from archgen.merge.tree_merge import EMPTY_MAPPING, MergeConflictError, merge_values, read_merged_value
-from archgen.model.review_settings import BreakPolicy
+from archgen.model.project_settings import BreakPolicy
 from archgen.pipeline import CheckedProject, VersionCache
 from archgen.project import TrackedProject
 from archgen.syntax.file_patterns import YAML_ENDINGS

@@ -18,9 +18,9 @@ from archgen.model.made_elements import ElementPlace, MadeElement
 from archgen.model.message_types import ConceptualType
 from archgen.model.node import Endpoint, Node, Topic
 from archgen.model.parameter import ParameterValue
+from archgen.model.project_settings import ConformSettings, GenerateSettings, ReviewSettings
 from archgen.model.quantity import Quantity
 from archgen.model.requirement import Requirement
-from archgen.model.review_settings import ConformSettings, GenerateSettings, ReviewSettings
 from archgen.model.source_repository import SourceRepository
 from archgen.model.use_case_steps import Actor, Step
 from archgen.model.variant import Variant

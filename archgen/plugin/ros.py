@@ -1,7 +1,7 @@
 """What archgen knows of ROS: distributions, messages and interface files, names, files of parameters."""
 
 from archgen.derivation.ros_names import shared_topic_names
-from archgen.derivation.wire.remap_rules import expand_name, find_name_fault, find_node_name_fault
+from archgen.derivation.wire.wire_names import expand_name, find_name_fault, find_node_name_fault
 from archgen.link.data_types.message_definitions import spell_message_name
 from archgen.link.interface_sources import load_interfaces
 from archgen.link.parameter_texts import (

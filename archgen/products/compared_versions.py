@@ -23,7 +23,7 @@ from archgen.frozen import dataclass, replace
 from archgen.git.commit_log import find_last_commit, find_own_mail, list_author_mails
 from archgen.git.project_revision import differs_from_head
 from archgen.link.project_linking import link_type_patterns
-from archgen.model.review_settings import agreement_file
+from archgen.model.project_settings import agreement_file
 from archgen.model.variant import BASE_NAME
 from archgen.pipeline import CheckedProject, VersionCache
 from archgen.project.project_search import find_project

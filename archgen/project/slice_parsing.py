@@ -14,7 +14,7 @@ from archgen.diagnostics.diagnostic import Diagnostic
 from archgen.diagnostics.source_span import SourceTexts, Span
 from archgen.frozen import dataclass, field, replace
 from archgen.model.agreed_terms import is_signature_file
-from archgen.model.review_settings import is_agreement_file
+from archgen.model.project_settings import is_agreement_file
 from archgen.project.project_search import PROJECT_FILE
 from archgen.schema import normalise_document, validate_document
 from archgen.syntax import yaml_parser

@@ -14,7 +14,7 @@ from archgen.diagnostics.source_span import Span
 from archgen.diagnostics.suggestions import find_closest
 from archgen.language.language_tables import COMMON_SECTIONS
 from archgen.model.agreed_terms import SIGNATURE_FOLDER
-from archgen.model.review_settings import agreement_file
+from archgen.model.project_settings import agreement_file
 from archgen.project import baseline_reading
 from archgen.project.project_search import PROJECT_FILE
 from archgen.project.slice_parsing import ReadingState, Slice, parse_file

@@ -15,7 +15,7 @@ from archgen import pipeline
 from archgen.checking import code_ownership
 from archgen.emit.codeowners_file import CODEOWNERS_PATHS
 from archgen.frozen import dataclass
-from archgen.model.review_settings import agreement_file
+from archgen.model.project_settings import agreement_file
 from archgen.pipeline import CheckedProject
 from archgen.products import editor_schema_file, editor_schema_marks
 from archgen.products.editor_schema_marks import SCHEMA_FILE

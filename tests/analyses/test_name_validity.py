@@ -7,7 +7,7 @@ from collections.abc import Callable
 import pytest
 
 from archgen.analyses.name_validity import duplicate_node_name, invalid_ros_name
-from archgen.derivation.wire.remap_rules import find_name_fault, find_node_name_fault
+from archgen.derivation.wire.wire_names import find_name_fault, find_node_name_fault
 
 Found = Callable[..., list[str]]
 _LETTERS = "and only letters (a to z), digits and `_` are allowed"

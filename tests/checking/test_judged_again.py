@@ -8,8 +8,7 @@ import pytest
 
 from archgen import project
 from archgen.checking.checked_project import CheckedProject
-from archgen.checking.merged_project import merge_project
-from archgen.checking.pass_judging import (
+from archgen.checking.derived_projects import (
     UnknownVariantError,
     judge_in_variants,
     keep_variant_findings,
@@ -18,6 +17,7 @@ from archgen.checking.pass_judging import (
     stand_in_variants,
     transform_project,
 )
+from archgen.checking.merged_project import merge_project
 from archgen.timing.run_analysis import AnalysisMemory
 
 ROBOT = """\

@@ -16,7 +16,7 @@ from archgen.compare.review_facts import ReviewFacts, name_author
 from archgen.compare.version_pair import VersionPair
 from archgen.diagnostics.source_span import Span
 from archgen.model.architecture import Partner
-from archgen.model.review_settings import AcceptedChange, ReviewSettings
+from archgen.model.project_settings import AcceptedChange, ReviewSettings
 from archgen.project.project_loading import load_from_files
 from archgen.syntax.project_files import OverlaidFiles
 

@@ -7,7 +7,7 @@ import pytest
 from archgen.compare.breaking_changes import _rank_change as rank_change
 from archgen.compare.comparison import Change, PartnerBreak
 from archgen.diagnostics.diagnostic import Severity
-from archgen.model.review_settings import BreakCategory, BreakPolicy
+from archgen.model.project_settings import BreakCategory, BreakPolicy
 
 POLICY = BreakPolicy(wire=Severity.ERROR, promise=Severity.WARNING)
 CHANGES: dict[str, tuple[tuple[BreakCategory, str | None], ...]] = {

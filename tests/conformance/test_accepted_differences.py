@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 from archgen.conformance.accepted_differences import apply_acceptances
-from archgen.model.review_settings import AcceptedDifference
+from archgen.model.project_settings import AcceptedDifference
 from archgen.pipeline import check_project
 from tests.cli.conftest import Run, run
 from tests.conformance.rovers import ROVER, check_rover, compare_with_graph, print_graph, show_findings

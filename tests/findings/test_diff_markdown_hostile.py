@@ -16,7 +16,7 @@ from archgen.diagnostics.source_span import Span
 from archgen.emit.markdown import comparison_markdown
 from archgen.emit.markdown.inert_text import escape_inert
 from archgen.emit.markdown.limited_comment import MAX_COMMENT_SIZE
-from archgen.model.review_settings import AcceptedChange
+from archgen.model.project_settings import AcceptedChange
 from archgen.timing.figures.timing_values import TimingValue
 from archgen.views.changes.comparison_document import ReadingErrors, describe_comparison
 from archgen.views.graphs.changes import SMALL_BUDGET, draw_changes

@@ -29,7 +29,7 @@ from archgen.compare.kinds.kind_spec import (
 )
 from archgen.compare.normal_values import unordered_values
 from archgen.derivation.port_endpoints import flow_of_use
-from archgen.derivation.wire.remap_rules import NodeNames
+from archgen.derivation.wire.wire_names import NodeNames
 from archgen.diagnostics.source_span import NO_SPAN, Span
 from archgen.frozen import NamedTuple, fields
 from archgen.model.known_interfaces import Interface, InterfaceConstant, InterfaceField

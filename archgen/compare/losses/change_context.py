@@ -23,7 +23,7 @@ from archgen.diagnostics.diagnostic import Severity
 from archgen.frozen import NamedTuple
 from archgen.model.architecture import Architecture
 from archgen.model.node import Endpoint
-from archgen.model.review_settings import BreakCategory
+from archgen.model.project_settings import BreakCategory
 
 Wire = frozenset[tuple[object, ...]]
 """What the nodes of an output offer: names, messages, QoS, and whether a program does so or only a plan."""

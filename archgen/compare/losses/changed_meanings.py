@@ -17,8 +17,8 @@ from archgen.model.architecture import Architecture
 from archgen.model.component import Output
 from archgen.model.coordinate_frames import index_child_frames
 from archgen.model.graph_search import find_reachable
+from archgen.model.project_settings import BreakCategory
 from archgen.model.quantity import Quantity, parse_quantity
-from archgen.model.review_settings import BreakCategory
 
 
 def find_changed_frames(context: ChangeContext) -> Iterator[PartnerLoss]:

@@ -11,7 +11,7 @@ from archgen.model.architecture import Architecture
 from archgen.model.node import Node
 from archgen.model.parameter import Parameter
 from archgen.model.parameter_values import find_value_fault
-from archgen.model.review_settings import BreakCategory
+from archgen.model.project_settings import BreakCategory
 from archgen.model.setting_sharing import is_set_by_instance, list_set_values
 
 _SECTION = "parameters."

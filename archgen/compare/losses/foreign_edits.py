@@ -17,7 +17,7 @@ from archgen.diagnostics.common_wording import join_words
 from archgen.diagnostics.diagnostic import Severity
 from archgen.frozen import NamedTuple
 from archgen.model.architecture import Architecture
-from archgen.model.review_settings import agreement_file
+from archgen.model.project_settings import agreement_file
 
 _AGREEMENT_KEYS = "review.accepted."
 

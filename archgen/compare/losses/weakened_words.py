@@ -17,8 +17,8 @@ from archgen.model.architecture import Architecture
 from archgen.model.component import ComponentType, Output
 from archgen.model.component_nesting import list_relied_outputs
 from archgen.model.message_types import ConceptualType
+from archgen.model.project_settings import BreakCategory
 from archgen.model.promise import Deprecation, Promise, format_range
-from archgen.model.review_settings import BreakCategory
 
 
 class _Weakening(NamedTuple):

@@ -9,7 +9,7 @@ from archgen.edit.refactoring.judged_version import JudgedVersion
 from archgen.edit.refactoring.kept_names import KEEP_NONE, KeptNames
 from archgen.edit.refactoring.refactoring import MAX_LISTED, NameTexts, Refactoring, prove_refactoring, refuse_unsound
 from archgen.edit.refactoring.renamed_ids import RenamedIds, rename_last_word
-from archgen.model.review_settings import is_agreement_file
+from archgen.model.project_settings import is_agreement_file
 
 _ODD_LETTERS = frozenset("\"'\\{}[],#&*!|>%@`:")
 """Letters that mean something in YAML, in selectors or in quotes: no name of an element has one."""

@@ -21,7 +21,7 @@ from archgen.diagnostics.safe_text import format_json
 from archgen.emit.data.findings_data import finding_to_json
 from archgen.emit.data.timing_json import duration_to_json, quantity_to_json
 from archgen.model.node import Qos
-from archgen.model.review_settings import BREAK_CATEGORIES
+from archgen.model.project_settings import BREAK_CATEGORIES
 from archgen.timing.analysis import ChainResult
 from archgen.views.changes.comparison_document import ReadingErrors, sort_by_severity
 from archgen.views.inline_text import list_qos_settings

@@ -19,7 +19,7 @@ from archgen.link.value_readers import read_element, read_values
 from archgen.model.agreed_terms import Agreement, Signature
 from archgen.model.architecture import Chain, Policy, ProjectInfo, SourceDemand, View, Waypoint
 from archgen.model.path_resolver import ElementRef
-from archgen.model.review_settings import (
+from archgen.model.project_settings import (
     BREAK_CATEGORIES,
     AcceptedChange,
     AcceptedDifference,

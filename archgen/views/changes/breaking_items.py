@@ -15,7 +15,7 @@ from archgen.compare.key_phrases import shorten_text, tick_names
 from archgen.diagnostics.common_wording import fit_lines, join_words
 from archgen.diagnostics.diagnostic import Diagnostic, Severity
 from archgen.frozen import dataclass, replace
-from archgen.model.review_settings import BREAK_CATEGORIES, BreakCategory
+from archgen.model.project_settings import BREAK_CATEGORIES, BreakCategory
 from archgen.views.changes import breaking_verdict
 from archgen.views.changes.named_elements import name_each
 

@@ -19,7 +19,7 @@ from archgen.diagnostics.common_wording import join_words
 from archgen.diagnostics.diagnostic import Severity
 from archgen.diagnostics.suggestions import did_you_mean
 from archgen.frozen import NamedTuple
-from archgen.model.review_settings import (
+from archgen.model.project_settings import (
     BREAK_CATEGORIES,
     AcceptedChange,
     BreakCategory,

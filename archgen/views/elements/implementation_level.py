@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import shlex
 
-from archgen.derivation.wire.remap_rules import list_written_remaps
+from archgen.derivation.wire.wire_names import list_written_remaps
 from archgen.model.component_nesting import find_component
 from archgen.model.node import Endpoint, Node
 from archgen.model.port_media import ROS

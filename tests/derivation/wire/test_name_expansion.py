@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from archgen.derivation.wire.remap_rules import expand_name, find_name_fault, find_node_name_fault
+from archgen.derivation.wire.wire_names import expand_name, find_name_fault, find_node_name_fault
 
 REFUSED = None
 

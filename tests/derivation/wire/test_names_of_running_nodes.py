@@ -17,7 +17,7 @@ from archgen.bringup.program_names import (
     group_endpoints,
     index_endpoints,
 )
-from archgen.derivation.wire.remap_rules import NodeNames, apply_launch_names, read_arguments
+from archgen.derivation.wire.wire_names import NodeNames, apply_launch_names, read_arguments
 from archgen.model.architecture import Architecture
 from archgen.model.node import Node
 from tests.derivation.wire.test_remap_rules import REFUSED_IN_ROS_2, ROS_2_ROWS

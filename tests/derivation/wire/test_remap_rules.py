@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from archgen.derivation.wire.remap_rules import NodeNames, apply_launch_names, find_rule_fault, read_remaps, read_rule
+from archgen.derivation.wire.wire_names import NodeNames, apply_launch_names, find_rule_fault, read_remaps, read_rule
 from archgen.diagnostics.source_span import NO_SPAN
 from archgen.model.node import FlowKind, Node
 

@@ -1,7 +1,4 @@
-"""What passes make of a checked project is judged again, and what they left in comments is read back.
-
-A project is judged as it stands in each of its variants.
-"""
+"""A project is judged as it stands in each of its variants, and as passes make it; what these left in comments is read back."""
 
 from __future__ import annotations
 

@@ -1,9 +1,4 @@
-"""How a project reviews changes: the branch to compare with, the severity of breaking changes, accepted changes.
-
-How a project is held against the robot that exists: against what, which nodes do not count, accepted differences.
-
-What a project generates: the folder of its workspace, and the backends that write it.
-"""
+"""What a project sets for verbs: how changes are reviewed, against which robot it is held, what is generated."""
 
 from __future__ import annotations
 

@@ -1,10 +1,8 @@
-"""Rules that give names of a program other ones (`remaps`, `-r x:=y`, `__ns:=/a`), applied as ROS 2 and ROS 1 apply them.
+"""Names on the wire: those that a program writes, made absolute, and rules that give it others (`remaps`, `-r x:=y`, `__ns:=/a`).
 
-Both sides are made absolute with the final namespace and name of the node; then whole names are compared, once: no chains.
-The first rule that fits counts in ROS 2, the last one in ROS 1. ROS 1 has one exception: of two spellings of one name rospy
-and roscpp take different ones, so that the name is not known.
-
-Names as a program writes them become absolute ones, as ROS 2 (rcl) and ROS 1 (rospy, roscpp) do it.
+Both as ROS 2 (rcl) and ROS 1 (rospy, roscpp) do it. Both sides of a rule are made absolute with the final namespace and name
+of the node; then whole names are compared, once: no chains. The first rule that fits counts in ROS 2, the last one in ROS 1.
+ROS 1 has one exception: of two spellings of one name rospy and roscpp take different ones, so that the name is not known.
 """
 
 from __future__ import annotations
