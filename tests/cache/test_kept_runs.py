@@ -269,4 +269,4 @@ def test_a_run_that_fails_leaves_nothing_replaced(monkeypatch: pytest.MonkeyPatc
     sys.stderr.write("no end")
     keeper.stop_noting()
     assert sys.stderr is said
-    assert said.buffer.getvalue() == b"no end"  # type: ignore[attr-defined]
+    assert said.buffer.getvalue() == b"no end"
