@@ -4,6 +4,9 @@ from __future__ import annotations
 
 import os
 
+KEPT_VERBS = ("check", "generate")
+"""Verbs whose runs are kept: their words follow from what they read, not from the time, nor from what git or somebody at the keyboard says."""
+
 
 def find_cache_path() -> str | None:
     """Return the path of the cache folder, None where the system has no place for it."""
