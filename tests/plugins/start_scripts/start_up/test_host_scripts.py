@@ -194,6 +194,35 @@ def test_what_respawns_starts_again(port: int, tmp_path: Path) -> None:
     assert [line for line in stage.journal if line.endswith(" b")] == ["start b", "fall b", "start b", "stop b"]
 
 
+LIFECYCLE_PROJECT = """\
+archgen: 1
+project: {id: robot}
+ros: {distro: jazzy}
+groups: {g: {components: {arm: {outputs: {o: {type: std_msgs/msg/Bool, external: Somebody}}}}}}
+nodes: {arm: {implements: arm, kind: lifecycle, package: p, executable: arm_node, start: {state: active, respawn: true, respawn_delay: 1 s, ready: {within: 60 s}}}}
+"""
+
+
+@pytest.mark.slow  # it waits for seconds, as the script does
+def test_a_lifecycle_node_that_respawns_is_brought_into_its_state_again(tmp_path: Path) -> None:
+    (tmp_path / "project").mkdir()
+    (tmp_path / "project" / "archgen.yaml").write_text(LIFECYCLE_PROJECT, encoding="utf-8")
+    script = make_workspace(tmp_path / "project", tmp_path / "ws") / "start.sh"
+    stage = Stage(tmp_path / "stage", {"arm_node": "arm"}, services={"/arm/change_state": "arm"})
+    run = Run(script, stage)
+    run.wait_for("up        all: 1 step")
+    os.kill(stage.read_process("arm"), signal.SIGKILL)
+    run.wait_until(lambda: stage.journal.count("activate /arm") == 2)
+    run.wait_until(lambda: run.output.count("up        arm") == 2)
+    run.send(signal.SIGINT)
+    assert run.wait_for_end() == 0
+    assert [line for line in stage.journal if not line.startswith("stop")] == 2 * [
+        "start arm",
+        "configure /arm",
+        "activate /arm",
+    ]
+
+
 def test_what_is_not_up_in_time_is_said(port: int, tmp_path: Path) -> None:
     run, stage = start(make_script(tmp_path, port, within="500 ms"), tmp_path, port, ports={})
     assert run.wait_for_end() == 1

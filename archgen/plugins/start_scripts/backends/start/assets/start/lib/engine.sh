@@ -5,7 +5,7 @@
 ids=() failure='' interrupt='' announced=no is_follower=no run=''
 phases=(network simulators core components)
 declare -A phase=() number=() kind=() host_of=() state=() log=() within=() user=() directory=() respawn=() cpu_words=()
-declare -A deadline=() again_at=() reason=() told_at=() address=() is_told=()
+declare -A deadline=() again_at=() reason=() told_at=() address=() is_told=() is_brought=()
 guarded='' never='' locked='' left_over=no shown_host='' host='' open_phase=network
 library=$(cd -- "$(dirname -- "${BASH_SOURCE[0]}")" && pwd)
 top=${library%/*/*}
@@ -43,7 +43,7 @@ step() {
       --after) its_awaited+=("$2" up); shift 2 ;;
       --after-start-of) its_awaited+=("$2" started); shift 2 ;;
       --port | --file | --topic | --service | --log | --time) its_signs+=("$1" "$2"); shift 2 ;;
-      --lifecycle) its_signs+=("$1" "$2" "$3" "$4"); shift 4 ;;
+      --lifecycle) its_signs+=("$1" "$2" "$3" "$4") is_brought[$id]=yes; shift 4 ;;
       --load) its_signs+=("$1" "$2") kind[$id]=loaded; shift 2 ;;
       --within) within[$id]=$2; shift 2 ;;
       --once) kind[$id]=once; shift ;;
@@ -179,7 +179,11 @@ begin() { # ID
       watch "$id"
       ;;
   esac
-  [[ -z ${within[$id]-} ]] || deadline[$id]=$((SECONDS + $(round_up "${within[$id]}") + 1))
+  begin_patience "$id"
+}
+
+begin_patience() { # ID: from now on it has its time to come up
+  [[ -z ${within[$1]-} ]] || deadline[$1]=$((SECONDS + $(round_up "${within[$1]}") + 1))
 }
 
 round_up() { # SECONDS
@@ -203,6 +207,11 @@ look_at_program() { # ID
     again_at[$id]=''
     say again "$id"
     launch "$id"
+    # A node with a life cycle begins anew: somebody has to bring it into its state again.
+    if [[ ${state[$id]} == up && -n ${is_brought[$id]-} ]]; then
+      become starting "$id"
+      begin_patience "$id"
+    fi
     [[ ${state[$id]} == up ]] || watch "$id"
     return
   fi
