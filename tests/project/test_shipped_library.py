@@ -19,7 +19,7 @@ from archgen.project import library_reading
 from archgen.project.library_reading import load_shipped_component_types, read_shipped_document
 from archgen.syntax.yaml_tree import MappingNode, SequenceNode, YamlNode
 from tests.repositories import repository
-from tests.running import ROOT, archgen_here
+from tests.running import ROOT
 
 HEAD = "archgen: 1\nproject: {id: robot, title: Robot}\n"
 SMALL = "ros: {distro: jazzy}\nlibraries: {ros: builtin}\ngroups: {g: {components: {it: {is: ros.map_server}}}}\n"
@@ -329,24 +329,3 @@ def test_what_is_no_path_is_refused_as_any_other(tmp_path: Path) -> None:
     for path in ("Builtin", "builtin/", "' builtin'", "[builtin]", "null", "1"):
         text = f"libraries: {{ros: {path}}}\ngroups: {{g: {{components: {{it: {{is: ros.amcl}}}}}}}}\n"
         assert check(tmp_path, text), path
-
-
-@pytest.mark.parametrize(
-    ("facts", "made"),
-    [
-        ("", set()),
-        (", node: {status: planned}", {"src/v4l2_camera"}),
-        (", status: adapted, node: {status: adapted}", set()),
-    ],
-)
-def test_no_program_is_generated_for_what_the_library_has_unless_it_is_planned(
-    facts: str, made: set[str], tmp_path: Path
-) -> None:
-    (tmp_path / "archgen.yaml").write_text(
-        "archgen: 1\nproject: {id: r}\nros: {distro: jazzy}\nlibraries: {ros: builtin}\n"
-        f"groups: {{g: {{components: {{camera: {{is: ros.v4l2_camera{facts}}}}}}}}}\n"
-    )
-    archgen_here("generate", "ros2_cpp", "-o", tmp_path / "ws", cwd=tmp_path, status=0)
-    assert {str(each.relative_to(tmp_path / "ws")) for each in tmp_path.glob("ws/src/*")} == made
-    camera = pipeline.check_project(tmp_path).architecture.components["g.camera"]
-    assert camera.status == ("adapted" if "adapted" in facts else "existing")
