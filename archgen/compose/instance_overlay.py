@@ -82,6 +82,7 @@ class InstanceOverlay:
                 entries[entry.key] = entry.with_value(SequenceNode(items, entry.value.span))
             else:
                 _lay_entry(entries, entry)
+        _drop_shipped_status(base, over, entries)
         return MappingNode(entries, base.span if is_open else over.span)
 
     def _lay_parts(
@@ -137,6 +138,22 @@ def _diagnose_unknown_part(
         help=did_you_mean(entry.key, known_ids) or f"an instance adds no {part_kind}s: add it to the type",
         element=instance_id,
     )
+
+
+def _drop_shipped_status(base: MappingNode, over: MappingNode, entries: dict[str, MappingEntry]) -> None:
+    """Take away that a program exists where the type that says so ships with archgen, and another package is named: a project's own."""
+    base_node, own_node, laid = base.get("node"), over.get("node"), entries.get("node")
+    if not (isinstance(base_node, MappingNode) and isinstance(own_node, MappingNode) and laid):
+        return
+    status, package, own_package = base_node.get("status"), base_node.get("package"), own_node.get("package")
+    is_other = (
+        isinstance(package, ScalarNode) and isinstance(own_package, ScalarNode) and package.text != own_package.text
+    )
+    # All that ships counts as written in one place.
+    if is_other and status is not None and package is not None and status.span == package.span:
+        for mapping in (entries, laid.value.entries if isinstance(laid.value, MappingNode) else {}):
+            if "status" in mapping and mapping["status"].value.span == status.span:
+                del mapping["status"]
 
 
 def lay_mapping(base: MappingNode, over: MappingNode, holder_key: str = "") -> MappingNode:

@@ -350,3 +350,27 @@ def test_no_program_is_generated_for_what_the_library_has_unless_it_is_planned(
     assert {str(each.relative_to(tmp_path / "ws")) for each in tmp_path.glob("ws/src/*")} == made
     camera = pipeline.check_project(tmp_path).architecture.components["g.camera"]
     assert camera.status == ("adapted" if "adapted" in facts else "existing")
+
+
+@pytest.mark.parametrize(
+    ("own_node", "status"),
+    [
+        ("{package: my_camera}", None),
+        ("{package: my_camera, status: existing}", "existing"),
+        ("{package: v4l2_camera}", "existing"),
+        ("{parameters: {brightness: 3}}", "existing"),
+    ],
+)
+def test_a_program_in_a_package_of_ones_own_is_not_said_to_exist(
+    own_node: str, status: str | None, tmp_path: Path
+) -> None:
+    for form in (
+        f"groups: {{g: {{components: {{camera: {{is: ros.v4l2_camera, node: {own_node}}}}}}}}}\n",
+        f"component_types: {{mine: {{is: ros.v4l2_camera, node: {own_node}}}}}\ngroups: {{g: {{components: {{camera: {{is: mine}}}}}}}}\n",
+    ):
+        file = tmp_path / "project.yaml"
+        file.write_text(f"ros: {{distro: jazzy}}\nlibraries: {{ros: builtin}}\n{form}")
+        architecture = pipeline.check_project(file).architecture
+        assert architecture.nodes["camera"].status == status
+        if "status" not in own_node:
+            assert architecture.components["g.camera"].status == status
