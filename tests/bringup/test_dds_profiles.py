@@ -18,8 +18,9 @@ Derived = Callable[[str], Architecture]
 
 ROBOT = """
 ros: {{distro: {distro}, discovery: peers, environment: {{{environment}}}}}
-hosts: {{head: {{address: 10.0.0.1}}, base: {{address: 10.0.0.2}}, arm: {{address: arm.local}}, desk: {{address: 10.0.1.4}}}}
-links: {{cable: [head, base, arm], radio: [base, desk]}}
+hosts: {{head: {{address: 10.0.0.1}}, base: {{address: 10.0.0.2}}, arm: {{address: arm.local}}, desk: {{address: 10.0.1.4}}, itself: {{address: 127.0.0.1}}, everywhere: {{address: 0.0.0.0}},
+  six: {{address: 'fd00::1'}}}}
+links: {{cable: [head, base, arm, six], radio: [base, desk]}}
 """
 
 
@@ -33,6 +34,8 @@ links: {{cable: [head, base, arm], radio: [base, desk]}}
         ("humble", "", "base", ("FASTRTPS_DEFAULT_PROFILES_FILE", (), ("127.0.0.1", "10.0.0.1", "arm.local", "10.0.1.4"))),
         ("jazzy", "", "base", None),
         ("jazzy", "", "arm", None),
+        ("jazzy", "", "itself", None),
+        ("jazzy", "", "everywhere", None),
         ("jazzy", "", None, None),
         ("jazzy", "RMW_IMPLEMENTATION: rmw_cyclonedds_cpp", "head", None),
         ("jazzy", "FASTRTPS_DEFAULT_PROFILES_FILE: /etc/own.xml", "head", None),

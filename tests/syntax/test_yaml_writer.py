@@ -37,7 +37,7 @@ def test_form() -> None:
 
 
 def test_a_comment_stays_on_its_line_whatever_it_holds() -> None:
-    comments = {("a",): "only if \0\nb: injected\u2028c: injected\x1b"}
+    comments: dict[yaml_writer.ElementPath, str] = {("a",): "only if \0\nb: injected\u2028c: injected\x1b"}
     text = yaml_writer.write_yaml({"a": {"b": 1}}, comments)
     assert text == "a:  # only if ␀␊b: injected\ufffdc: injected␛\n  b: 1\n"
 
