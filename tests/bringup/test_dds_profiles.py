@@ -11,6 +11,7 @@ from pathlib import Path
 import pytest
 
 from archgen.bringup.dds_profiles import find_dds_profile, record_dds_profile
+from archgen.derivation.wire.running_state import list_peers
 from archgen.model.architecture import Architecture
 from tests.ros_environment import ROS_FOLDER, make_ros_python, ros_environment
 
@@ -22,6 +23,19 @@ hosts: {{head: {{address: 10.0.0.1}}, base: {{address: 10.0.0.2}}, arm: {{addres
   six: {{address: 'fd00::1'}}}}
 links: {{cable: [head, base, arm, six], radio: [base, desk]}}
 """
+
+
+def test_what_runs_nothing_and_has_no_address_is_no_peer(derived: Derived) -> None:
+    """With a name that cannot be resolved no node of Fast DDS starts."""
+    architecture = derived(
+        """
+        ros: {distro: jazzy, discovery: peers}
+        hosts: {head: {}, base: {}, motor_controller: {}, desk: {address: desk.local}}
+        groups: {g: {components: {a: {outputs: {o: std_msgs/msg/Bool}}, b: {inputs: {o: a.o}}}}}
+        nodes: {a: {implements: a, host: head}, b: {implements: b, host: base}}
+        """
+    )
+    assert list_peers(architecture, "head") == ("base", "desk.local")
 
 
 @pytest.mark.parametrize(
