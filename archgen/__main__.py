@@ -59,13 +59,7 @@ def _run_verb() -> None:
     # A run is short, and its long-lived objects (trees, models) form no cycles: searching them for garbage again and
     # again costs a fifth of the run.
     gc.disable()
-    for name in ("stdout", "stderr"):
-        if getattr(sys, name) is None:  # the caller closed it: discard what is written
-            setattr(sys, name, open(os.devnull, "w", encoding="utf-8"))  # noqa: SIM115, PTH123 - until the process ends
-    if isinstance(sys.stdout, io.TextIOWrapper):
-        if sys.platform == "win32" and not sys.stdout.isatty():
-            sys.stdout.reconfigure(encoding="utf-8")  # whoever reads a pipe or file there reads JSON, CSV, YAML
-        sys.stdout.reconfigure(errors="replace")  # where it is not UTF-8: a question mark instead of no output at all
+    _prepare_streams()
     keeper = _start_keeping()
     import click
 
@@ -81,6 +75,8 @@ def _run_verb() -> None:
                 keeper.keep(end.code)
             raise
         finally:
+            if keeper:
+                keeper.stop_noting()
             # At its end Python looks through all objects for garbage, whether or not it did so before: a tenth of a check.
             gc.freeze()
             sys.stdout.flush()  # here, so that a closed pipe or a full disk is still handled by the caller
@@ -94,11 +90,21 @@ def _run_verb() -> None:
         raise (abort.__cause__ if isinstance(abort.__cause__, KeyboardInterrupt) else KeyboardInterrupt) from None
 
 
+def _prepare_streams() -> None:
+    for name in ("stdout", "stderr"):
+        if getattr(sys, name) is None:  # the caller closed it: discard what is written
+            setattr(sys, name, open(os.devnull, "w", encoding="utf-8"))  # noqa: SIM115, PTH123 - until the process ends
+    if isinstance(sys.stdout, io.TextIOWrapper):
+        if sys.platform == "win32" and not sys.stdout.isatty():
+            sys.stdout.reconfigure(encoding="utf-8")  # whoever reads a pipe or file there reads JSON, CSV, YAML
+        sys.stdout.reconfigure(errors="replace")  # where it is not UTF-8: a question mark instead of no output at all
+
+
 def _start_keeping() -> RunKeeper | None:
     """Say what an earlier run said, and end, where it would be the same again; return what keeps this one otherwise."""
     # Where it is not POSIX, nothing tells when a file changed, whatever date it was given. From Python 3.13 on
     # `Path.glob` asks past the functions that are watched.
-    if os.name != "posix" or sys.version_info >= (3, 13):
+    if not hasattr(os, "geteuid") or sys.version_info >= (3, 13):
         return None
     from archgen.cache.kept_runs import KEPT_VERBS, RunKeeper
 

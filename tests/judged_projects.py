@@ -15,6 +15,8 @@ from archgen.checking.checked_project import CheckedProject
 _ROOT = Path(__file__).resolve().parents[1]
 _RAMCIP = _ROOT / "example_ramcip"
 _SHIPPED_FOLDERS = (_RAMCIP, _ROOT / "examples")
+SAID_BY_PACKING = frozenset({"borrowed-call", "borrowed-message"})
+"""Rules about what a packed file says for itself: the messages that the shipped mapper gave its types."""
 _Key = tuple[object, ...]
 _JUDGED: dict[_Key, CheckedProject] = {}
 _check_project = pipeline.check_project

@@ -123,15 +123,23 @@ class RunKeeper:
             setattr(module, name, self._note_calls(getattr(module, name), kind))
         self._is_noting = True
 
+    def stop_noting(self) -> None:
+        """Put back what was replaced, and hand on what is still to be said."""
+        if not self._originals:
+            return
+        self._is_noting = False
+        while self._originals:
+            setattr(*self._originals.pop())
+        copies = sys.stdout, sys.stderr
+        sys.stdout, sys.stderr = self._streams
+        for copy in copies:
+            copy.flush()
+
     def keep(self, status: object) -> None:
         """Keep the run where that is sound."""
         if not self._originals:
             return
-        self._is_noting = False
-        sys.stdout.flush()
-        sys.stdout, sys.stderr = self._streams
-        for original in self._originals:
-            setattr(*original)
+        self.stop_noting()
         # A plug-in of others may ask the clock.
         self._is_keepable &= not list_all_entries()
         if not self._is_keepable or status not in {0, 1} or not _is_safe(self._said):
@@ -231,7 +239,10 @@ def _name_run(words: Sequence[str]) -> str:
     streams = [
         (stream.isatty(), getattr(stream, "encoding", "")) for stream in (sys.stdin, sys.stdout, sys.stderr) if stream
     ]
-    width = os.get_terminal_size(1) if sys.stdout.isatty() else None
+    try:
+        width = os.get_terminal_size(1)
+    except OSError:  # no terminal
+        width = None
     folder = os.getcwd() if os.path.isdir(".") else ""  # noqa: PTH109, PTH112 - as above
     surroundings = (sys.version, sys.executable, sys.flags, folder, os.geteuid(), sorted(os.environ.items()))
     return _digest(repr((list(words), streams, width, *surroundings)))

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import io
 import json
 import os
 import shutil
@@ -267,3 +268,15 @@ def test_a_second_generate_says_the_same_again_until_a_made_file_changes() -> No
     made = next(path for path in sorted(Path("out").rglob("*")) if path.is_file() and ".archgen" not in path.parts)
     made.write_text("by hand")
     assert not _archgen("generate", "ros2_launch", "-o", "out")[0]
+
+
+def test_a_run_that_fails_leaves_nothing_replaced(monkeypatch: pytest.MonkeyPatch) -> None:
+    """What it said last, without an end of the line, is said."""
+    keeper = RunKeeper(["check"])
+    said = io.TextIOWrapper(io.BytesIO(), line_buffering=True)
+    monkeypatch.setattr(sys, "stderr", said)
+    keeper.start_noting()
+    sys.stderr.write("no end")
+    keeper.stop_noting()
+    assert sys.stderr is said
+    assert said.buffer.getvalue() == b"no end"

@@ -17,7 +17,7 @@ from archgen.compare import ArchitectureVersion, Change, Comparison
 from archgen.compare.compare_versions import compare_versions
 from archgen.products.compared_versions import make_comparison_input
 from archgen.syntax import yaml_writer as writer
-from tests.judged_projects import judge_ramcip
+from tests.judged_projects import SAID_BY_PACKING, judge_ramcip
 from tests.running import RAMCIP
 
 
@@ -39,8 +39,11 @@ def packed() -> dict[str, object]:
 def assert_same(one: ArchitectureVersion, other: ArchitectureVersion) -> None:
     for found in (compare_versions(one, other), compare_versions(other, one)):
         assert [change.text for change in found.changes] == []
-        assert [f"{d.rule} {d.message}" for d in (*found.new_findings, *found.cured_findings)] == []
-        assert found.is_empty
+        assert [
+            f"{d.rule} {d.message}"
+            for d in (*found.new_findings, *found.cured_findings)
+            if d.rule not in SAID_BY_PACKING
+        ] == []
         assert (found.concerned_owners, found.chains) == ((), ())
 
 

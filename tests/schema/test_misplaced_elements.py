@@ -33,7 +33,7 @@ groups:
 nodes:
   lidar_driver:
     implements: lidar
-    package: urg_node
+    package: our_lidar
   stop_node:
     implements: stop
     package: robot_stop
