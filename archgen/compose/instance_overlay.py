@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 
+from archgen.compose.library_types import LibraryWord
 from archgen.diagnostics.diagnostic import Diagnostic, Label
 from archgen.diagnostics.suggestions import did_you_mean
 from archgen.syntax.yaml_tree import MappingEntry, MappingNode, ScalarNode, SequenceNode, YamlNode
@@ -82,7 +83,7 @@ class InstanceOverlay:
                 entries[entry.key] = entry.with_value(SequenceNode(items, entry.value.span))
             else:
                 _lay_entry(entries, entry)
-        _drop_shipped_status(base, over, entries)
+        _drop_library_status(base, over, entries)
         return MappingNode(entries, base.span if is_open else over.span)
 
     def _lay_parts(
@@ -140,19 +141,16 @@ def _diagnose_unknown_part(
     )
 
 
-def _drop_shipped_status(base: MappingNode, over: MappingNode, entries: dict[str, MappingEntry]) -> None:
-    """Take away that a program exists where the type that says so ships with archgen, and another package is named: a project's own."""
+def _drop_library_status(base: MappingNode, over: MappingNode, entries: dict[str, MappingEntry]) -> None:
+    """Take away what a library says of its program's status where another package is named: that program is a project's own."""
     base_node, own_node, laid = base.get("node"), over.get("node"), entries.get("node")
     if not (isinstance(base_node, MappingNode) and isinstance(own_node, MappingNode) and laid):
         return
-    status, package, own_package = base_node.get("status"), base_node.get("package"), own_node.get("package")
-    is_other = (
-        isinstance(package, ScalarNode) and isinstance(own_package, ScalarNode) and package.text != own_package.text
-    )
-    # All that ships counts as written in one place.
-    if is_other and status is not None and package is not None and status.span == package.span:
+    package, own_package = base_node.get("package"), own_node.get("package")
+    if isinstance(package, ScalarNode) and isinstance(own_package, ScalarNode) and package.text != own_package.text:
         for mapping in (entries, laid.value.entries if isinstance(laid.value, MappingNode) else {}):
-            if "status" in mapping and mapping["status"].value.span == status.span:
+            status = mapping["status"].value if "status" in mapping else None
+            if isinstance(status, ScalarNode) and isinstance(status.text, LibraryWord):
                 del mapping["status"]
 
 

@@ -370,7 +370,10 @@ def test_a_program_in_a_package_of_ones_own_is_not_said_to_exist(
     ):
         file = tmp_path / "project.yaml"
         file.write_text(f"ros: {{distro: jazzy}}\nlibraries: {{ros: builtin}}\n{form}")
-        architecture = pipeline.check_project(file).architecture
-        assert architecture.nodes["camera"].status == status
-        if "status" not in own_node:
-            assert architecture.components["g.camera"].status == status
+        packed = tmp_path / "packed.yaml"
+        archgen_here("pack", file, "-o", packed, cwd=tmp_path, status=0)
+        for each in (file, packed):
+            architecture = pipeline.check_project(each).architecture
+            assert architecture.nodes["camera"].status == status
+            if "status" not in own_node:
+                assert architecture.components["g.camera"].status == status
