@@ -5,6 +5,7 @@ from __future__ import annotations
 import contextlib
 import os
 import subprocess
+import time
 from collections.abc import Callable, Iterator, Mapping
 from pathlib import Path
 
@@ -123,10 +124,23 @@ def two_computers() -> Iterator[tuple[str, str]]:
             done = _run_ip(*each.split())
             if done.returncode:
                 pytest.skip(f"no networks can be made here: {done.stderr}")
+        # DDS looks once which interfaces run; a new one does so after a moment.
+        for name in names:
+            _wait_until_it_runs(name)
         yield names
     finally:
         for name in names:
             _run_ip("netns", "del", name)
+
+
+def _wait_until_it_runs(network: str) -> None:
+    end = time.monotonic() + 20
+    while (
+        "state UP" not in _run_ip("-n", network, "link", "show", "eth").stdout
+        or "tentative" in _run_ip("-n", network, "addr").stdout
+    ):
+        assert time.monotonic() < end, network
+        time.sleep(0.1)
 
 
 def _run_ip(*words: str) -> subprocess.CompletedProcess[str]:
