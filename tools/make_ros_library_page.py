@@ -39,7 +39,8 @@ accepted. `archgen list --of component_types --library builtin` lists them for a
 instance with its inputs to be filled. A type that does not fit is changed as any other: `my_slam: {is: ros.slam_toolbox, ...}` below
 `component_types` may add ports and parameters. A node that runs one of these programs without its type (`package`, and `executable` or
 `plugin`) is [told](rules/unlike-program.md) where the program's names are not the design's, and nothing remaps them. All of them exist (`status: existing`): `archgen generate` makes none of their
-packages, and [asks](rules/shadowed-package.md) about other nodes that have one of these.
+packages (what has a `package` of your own is made, unless its `status` says that it exists), and
+[asks](rules/shadowed-package.md) about other nodes that have one of these.
 
 An input with `?` is optional. Behind a port stands what the program calls it, where that is another name, and `by` the parameter that names
 it: a filter whose `odom0` is `odom/unfiltered` reads that topic, and has no input `odom1` on the robot where nobody gives that parameter.

@@ -238,6 +238,16 @@ def unused_ros_setting(architecture: Architecture) -> Iterator[Diagnostic]:
             middleware.at,
             help="leave it out, and let the hosts' routers connect: `ZENOH_ROUTER_CONFIG_URI` in `environment` names a file that says to whom",
         )
+    hosts = architecture.hosts.values() if architecture.ros_discovery == "peers" and is_told else ()
+    for host in hosts if len(hosts) > 1 else ():
+        if ":" in host.network_name:
+            yield Diagnostic(
+                "unused-ros-setting",
+                f"`discovery: peers` finds nothing at `{host.network_name}`: Fast DDS takes no peer by a number of IPv6, and nodes that are told of one do not start",
+                host.at,
+                help="write its IPv4 number, or a name that has one, as `address`; or another DDS (`RMW_IMPLEMENTATION` in `environment` of `ros`)",
+                element=host.id,
+            )
     for node in architecture.nodes.values():
         for key, place, reason in (*_list_port_settings(architecture, node), *_list_program_settings(node)):
             yield Diagnostic(

@@ -77,10 +77,12 @@ def find_dds_profile(architecture: Architecture, host_id: str | None) -> DdsProf
     written = {each.name: str(each.value) for each in architecture.ros_environment} | dict(host.environment)
     if not written.get("RMW_IMPLEMENTATION", _FAST_DDS).startswith(_FAST_DDS) or not _OWN_WORDS.isdisjoint(written):
         return None
-    peers = () if can_name_peers(architecture.distro) else (_LOOPBACK, *list_peers(architecture, host.id))
+    # It takes no peer by a number of IPv6, as `archgen check` says.
+    others = (each for each in list_peers(architecture, host.id) if ":" not in each)
+    peers = () if can_name_peers(architecture.distro) else tuple(dict.fromkeys((_LOOPBACK, *others)))
     networks = [each for each in architecture.links.values() if host.id in each.connects and len(each.connects) > 1]
     # Its one address is that of one network: of a second one nobody says which interface it is.
-    interfaces = (_LOOPBACK, host.network_name) if len(networks) <= 1 and _is_number(host.network_name) else ()
+    interfaces = (_LOOPBACK, host.network_name) if len(networks) <= 1 and _names_interface(host.network_name) else ()
     is_second = architecture.distro in PAST_DISTROS | {"humble", "jazzy"}
     return DdsProfile(_VARIABLES[0 if is_second else 1], interfaces, peers) if interfaces or peers else None
 
@@ -91,8 +93,10 @@ def record_dds_profile(architecture: Architecture, host_id: str | None) -> dict[
     return {"variable": profile.variable, "text": profile.write_xml()} if profile else None
 
 
-def _is_number(address: str) -> bool:
+def _names_interface(address: str) -> bool:
+    """Whether an address is the number of one interface through which others are reached."""
     try:
-        return bool(ipaddress.IPv4Address(address))
+        number = ipaddress.IPv4Address(address)
     except ValueError:
         return False
+    return not (number.is_loopback or number.is_unspecified)

@@ -113,7 +113,10 @@ class RunKeeper:
 
         self._streams = sys.stdout, sys.stderr
         sys.stdout, sys.stderr = self._copy_words(1, sys.stdout), self._copy_words(2, sys.stderr)
-        for module, name, kind in _NOTED_FUNCTIONS:
+        # What some starts of Python have loaded already has taken it: a `.pth` file does so, for instance.
+        subprocess = sys.modules.get("subprocess")
+        early_takers = ((subprocess, "_fork_exec", "act"),) if hasattr(subprocess, "_fork_exec") else ()
+        for module, name, kind in (*_NOTED_FUNCTIONS, *early_takers):
             self._originals.append((module, name, getattr(module, name)))
             setattr(module, name, self._note_calls(getattr(module, name), kind))
         self._is_noting = True

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 
+from archgen.compose.library_types import LibraryWord
 from archgen.diagnostics.diagnostic import Diagnostic, Label
 from archgen.diagnostics.suggestions import did_you_mean
 from archgen.syntax.yaml_tree import MappingEntry, MappingNode, ScalarNode, SequenceNode, YamlNode
@@ -82,6 +83,7 @@ class InstanceOverlay:
                 entries[entry.key] = entry.with_value(SequenceNode(items, entry.value.span))
             else:
                 _lay_entry(entries, entry)
+        _drop_library_status(base, over, entries)
         return MappingNode(entries, base.span if is_open else over.span)
 
     def _lay_parts(
@@ -137,6 +139,19 @@ def _diagnose_unknown_part(
         help=did_you_mean(entry.key, known_ids) or f"an instance adds no {part_kind}s: add it to the type",
         element=instance_id,
     )
+
+
+def _drop_library_status(base: MappingNode, over: MappingNode, entries: dict[str, MappingEntry]) -> None:
+    """Take away what a library says of its program's status where another package is named: that program is a project's own."""
+    base_node, own_node, laid = base.get("node"), over.get("node"), entries.get("node")
+    if not (isinstance(base_node, MappingNode) and isinstance(own_node, MappingNode) and laid):
+        return
+    package, own_package = base_node.get("package"), own_node.get("package")
+    if isinstance(package, ScalarNode) and isinstance(own_package, ScalarNode) and package.text != own_package.text:
+        for mapping in (entries, laid.value.entries if isinstance(laid.value, MappingNode) else {}):
+            status = mapping["status"].value if "status" in mapping else None
+            if isinstance(status, ScalarNode) and isinstance(status.text, LibraryWord):
+                del mapping["status"]
 
 
 def lay_mapping(base: MappingNode, over: MappingNode, holder_key: str = "") -> MappingNode:

@@ -7,6 +7,12 @@ from archgen.syntax.yaml_tree import MappingEntry, MappingNode, ScalarNode, list
 _TYPE_KEYS = ("is", "same_as")
 
 
+class LibraryWord(str):
+    """What a library says of its own program alone: its `status`."""
+
+    __slots__ = ()
+
+
 def list_type_entries(root: MappingNode) -> dict[str, MappingEntry]:
     """Return the component types that a project may name, by name: its own, then those of its libraries."""
     own_types = root.get("component_types")
@@ -33,9 +39,17 @@ def _qualify_type(entry: MappingEntry, library: str) -> MappingEntry:
         text = f"{library}.{reference.value.text.strip()}"
         return reference.with_value(ScalarNode(text, text, reference.value.span))
 
+    def mark(status: MappingEntry) -> MappingEntry:
+        value = status.value
+        if not isinstance(value, ScalarNode):
+            return status
+        return status.with_value(ScalarNode(value.value, LibraryWord(value.text), value.span, value.is_plain))
+
     return entry.change_keys(
         {
             **dict.fromkeys(_TYPE_KEYS, qualify),
+            "status": mark,
+            "node": lambda node: node.change_keys({"status": mark}),
             "deprecated": lambda deprecated: deprecated.change_keys({"use": qualify}),
             "components": lambda parts: parts.change_each(lambda part: _qualify_type(part, library)),
         }

@@ -5,12 +5,14 @@ from __future__ import annotations
 import contextlib
 import os
 import subprocess
+import time
 from collections.abc import Callable, Iterator, Mapping
 from pathlib import Path
 
 import pytest
 
 from archgen.bringup.dds_profiles import find_dds_profile, record_dds_profile
+from archgen.derivation.wire.running_state import list_peers
 from archgen.model.architecture import Architecture
 from tests.ros_environment import ROS_FOLDER, make_ros_python, ros_environment
 
@@ -18,9 +20,23 @@ Derived = Callable[[str], Architecture]
 
 ROBOT = """
 ros: {{distro: {distro}, discovery: peers, environment: {{{environment}}}}}
-hosts: {{head: {{address: 10.0.0.1}}, base: {{address: 10.0.0.2}}, arm: {{address: arm.local}}, desk: {{address: 10.0.1.4}}}}
-links: {{cable: [head, base, arm], radio: [base, desk]}}
+hosts: {{head: {{address: 10.0.0.1}}, base: {{address: 10.0.0.2}}, arm: {{address: arm.local}}, desk: {{address: 10.0.1.4}}, itself: {{address: 127.0.0.1}}, everywhere: {{address: 0.0.0.0}},
+  six: {{address: 'fd00::1'}}}}
+links: {{cable: [head, base, arm, six], radio: [base, desk]}}
 """
+
+
+def test_what_runs_nothing_and_has_no_address_is_no_peer(derived: Derived) -> None:
+    """With a name that cannot be resolved no node of Fast DDS starts."""
+    architecture = derived(
+        """
+        ros: {distro: jazzy, discovery: peers}
+        hosts: {head: {}, base: {}, motor_controller: {}, desk: {address: desk.local}}
+        groups: {g: {components: {a: {outputs: {o: std_msgs/msg/Bool}}, b: {inputs: {o: a.o}}}}}
+        nodes: {a: {implements: a, host: head}, b: {implements: b, host: base}}
+        """
+    )
+    assert list_peers(architecture, "head") == ("base", "desk.local")
 
 
 @pytest.mark.parametrize(
@@ -33,6 +49,8 @@ links: {{cable: [head, base, arm], radio: [base, desk]}}
         ("humble", "", "base", ("FASTRTPS_DEFAULT_PROFILES_FILE", (), ("127.0.0.1", "10.0.0.1", "arm.local", "10.0.1.4"))),
         ("jazzy", "", "base", None),
         ("jazzy", "", "arm", None),
+        ("jazzy", "", "itself", None),
+        ("jazzy", "", "everywhere", None),
         ("jazzy", "", None, None),
         ("jazzy", "RMW_IMPLEMENTATION: rmw_cyclonedds_cpp", "head", None),
         ("jazzy", "FASTRTPS_DEFAULT_PROFILES_FILE: /etc/own.xml", "head", None),
@@ -106,10 +124,23 @@ def two_computers() -> Iterator[tuple[str, str]]:
             done = _run_ip(*each.split())
             if done.returncode:
                 pytest.skip(f"no networks can be made here: {done.stderr}")
+        # DDS looks once which interfaces run; a new one does so after a moment.
+        for name in names:
+            _wait_until_it_runs(name)
         yield names
     finally:
         for name in names:
             _run_ip("netns", "del", name)
+
+
+def _wait_until_it_runs(network: str) -> None:
+    end = time.monotonic() + 20
+    while (
+        "state UP" not in _run_ip("-n", network, "link", "show", "eth").stdout
+        or "tentative" in _run_ip("-n", network, "addr").stdout
+    ):
+        assert time.monotonic() < end, network
+        time.sleep(0.1)
 
 
 def _run_ip(*words: str) -> subprocess.CompletedProcess[str]:

@@ -108,12 +108,22 @@ def test_what_was_asked_and_changed_is_noticed(change: str, monkeypatch: pytest.
     [
         lambda: Path("made").write_text("x"),
         lambda: os.waitpid(os.posix_spawn("/bin/true", ["true"], {}), 0),
+        # This process has loaded `subprocess` before.
+        lambda: subprocess.run(["/bin/true"], check=True, close_fds=True, cwd="."),
         lambda: os.rename("a", "b"),  # noqa: PTH104
         lambda: os.remove("a"),  # noqa: PTH107
         lambda: os.stat("a", dir_fd=os.open(".", os.O_RDONLY)),
         lambda: "\x1b]0;title\x07",
     ],
-    ids=["writes", "starts a process", "renames", "removes", "asks below an open folder", "rules the terminal"],
+    ids=[
+        "writes",
+        "starts a process",
+        "starts a process as git is started",
+        "renames",
+        "removes",
+        "asks below an open folder",
+        "rules the terminal",
+    ],
 )
 def test_a_run_that_does_more_than_read_is_not_kept(act: Callable[[], object]) -> None:
     Path("a").write_text("")

@@ -19,7 +19,7 @@ from archgen.project import library_reading
 from archgen.project.library_reading import load_shipped_component_types, read_shipped_document
 from archgen.syntax.yaml_tree import MappingNode, SequenceNode, YamlNode
 from tests.repositories import repository
-from tests.running import ROOT
+from tests.running import ROOT, archgen_here
 
 HEAD = "archgen: 1\nproject: {id: robot, title: Robot}\n"
 SMALL = "ros: {distro: jazzy}\nlibraries: {ros: builtin}\ngroups: {g: {components: {it: {is: ros.map_server}}}}\n"
@@ -329,3 +329,30 @@ def test_what_is_no_path_is_refused_as_any_other(tmp_path: Path) -> None:
     for path in ("Builtin", "builtin/", "' builtin'", "[builtin]", "null", "1"):
         text = f"libraries: {{ros: {path}}}\ngroups: {{g: {{components: {{it: {{is: ros.amcl}}}}}}}}\n"
         assert check(tmp_path, text), path
+
+
+@pytest.mark.parametrize(
+    ("own_node", "status"),
+    [
+        ("{package: my_camera}", None),
+        ("{package: my_camera, status: existing}", "existing"),
+        ("{package: v4l2_camera}", "existing"),
+        ("{parameters: {brightness: 3}}", "existing"),
+    ],
+)
+def test_a_program_in_a_package_of_ones_own_is_not_said_to_exist(
+    own_node: str, status: str | None, tmp_path: Path
+) -> None:
+    for form in (
+        f"groups: {{g: {{components: {{camera: {{is: ros.v4l2_camera, node: {own_node}}}}}}}}}\n",
+        f"component_types: {{mine: {{is: ros.v4l2_camera, node: {own_node}}}}}\ngroups: {{g: {{components: {{camera: {{is: mine}}}}}}}}\n",
+    ):
+        file = tmp_path / "project.yaml"
+        file.write_text(f"ros: {{distro: jazzy}}\nlibraries: {{ros: builtin}}\n{form}")
+        packed = tmp_path / "packed.yaml"
+        archgen_here("pack", file, "-o", packed, cwd=tmp_path, status=0)
+        for each in (file, packed):
+            architecture = pipeline.check_project(each).architecture
+            assert architecture.nodes["camera"].status == status
+            if "status" not in own_node:
+                assert architecture.components["g.camera"].status == status

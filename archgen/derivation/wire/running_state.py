@@ -73,8 +73,12 @@ def list_discovery(architecture: Architecture, host_id: str | None) -> dict[str,
 
 
 def list_peers(architecture: Architecture, host_id: str | None) -> tuple[str, ...]:
-    """Return the addresses of the hosts with which one shares a link; where nobody says which network there is, of all others."""
-    hosts = architecture.hosts
+    """Return the addresses of the hosts with which one shares a link; where nobody says which network there is, of all others.
+
+    Without those that have no address and run nothing, such as a controller: a name that cannot be resolved keeps nodes from starting.
+    """
+    running_hosts = {node.host for node in architecture.nodes.values()}
+    hosts = {name: host for name, host in architecture.hosts.items() if host.address or name in running_hosts}
     peers = [other for link in architecture.links.values() if host_id in link.connects for other in link.connects]
     found = peers if any(len(link.connects) > 1 for link in architecture.links.values()) else list(hosts)
     return tuple(dict.fromkeys(hosts[each].network_name for each in found if each in hosts and each != host_id))

@@ -178,7 +178,9 @@ def write_git_attributes(workspace: Path, old_text: str) -> str:
         for path, file in read_run_record(workspace, name).files.items()
         if not file.is_own and _PLAIN_PATH.match(path)
     }
-    attributes = [f"/{path} merge=union eol=lf linguist-generated" for path in sorted({*paths, ".gitattributes"})]
+    attributes = [
+        f"/{path} merge=union text=auto eol=lf linguist-generated" for path in sorted({*paths, ".gitattributes"})
+    ]
     lines = [_ATTRIBUTES_BEGIN, *attributes, _ATTRIBUTES_END] if paths else []
     before, begin, rest = old_text.partition(f"{_ATTRIBUTES_BEGIN}\n")
     after = rest.partition(f"{_ATTRIBUTES_END}\n")[2] if begin else ""

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import hashlib
 from collections import defaultdict
-from collections.abc import Collection, Iterable, Iterator, Mapping
+from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import Literal
@@ -96,7 +96,7 @@ def plan_workspace(
 ) -> WorkspacePlan:
     """Plan what a run of a backend does. `run` names the part that was asked for; the paths of `files` are sound."""
     wanted_files = {file.path: file for file in files}
-    planner = _Planner(record, run, disk, choices, choices.fits, frozenset(wanted_files))
+    planner = _Planner(record, run, disk, choices, choices.fits, wanted_files)
     # First what goes: a folder may take the place of a file, and a file that of a folder.
     for path, entry in record.files.items():
         if path not in wanted_files and choices.removes_unmade:
@@ -117,7 +117,7 @@ class _Planner:
     disk: DiskReader
     choices: UserChoices
     fits: KnownFits
-    wanted_paths: Collection[str]
+    files_by_path: Mapping[str, GeneratedFile]
     steps: list[FileStep] = field(default_factory=list)
     writes: dict[str, GeneratedFile] = field(default_factory=dict)
     modes: dict[str, int] = field(default_factory=dict)
@@ -190,9 +190,17 @@ class _Planner:
         return is_mixed and lines <= own_lines | self._leaving_lines
 
     @cached_property
+    def _files_by_name(self) -> Mapping[str, Sequence[GeneratedFile]]:
+        """The files that are made, by the last part of their paths."""
+        wanted_files: dict[str, list[GeneratedFile]] = defaultdict(list)
+        for path, file in self.files_by_path.items():
+            wanted_files[path.rpartition("/")[2]].append(file)
+        return wanted_files
+
+    @cached_property
     def _leaving_lines(self) -> frozenset[str]:
         """The lines of files that archgen wrote and makes no more, as short digests."""
-        leaving = (each for path, each in self.old_record.files.items() if path not in self.wanted_paths)
+        leaving = (each for path, each in self.old_record.files.items() if path not in self.files_by_path)
         return frozenset[str]().union(*(split_digests(each.lines) for each in leaving))
 
     def _is_users_own(self, file: GeneratedFile, entry: RecordedFile | None) -> bool:
@@ -257,7 +265,7 @@ class _Planner:
             return CodeReport((), last_meanings)
         data = self.disk.read_data(file.path)
         report = _judge(file, data, meanings, self._list_helpers(file.path))
-        if moved := tuple(find_moved_packages(file.path, data, self.wanted_paths)):
+        if moved := tuple(find_moved_packages(file.path, data, self._files_by_name)):
             report = replace(report, findings=(*report.findings, *moved))
         if (
             not report.findings
@@ -285,7 +293,7 @@ class _Planner:
         folder, _, name = path.rpartition("/")
         if folder and name.endswith(".py"):
             for each in self.disk.list_below(folder):
-                is_others = each not in self.wanted_paths and each not in self.old_record.files
+                is_others = each not in self.files_by_path and each not in self.old_record.files
                 if is_others and each.endswith(".py") and self.disk.read(each).exists:
                     yield each, self.disk.read_data(each)
 
@@ -295,7 +303,7 @@ class _Planner:
         It stays that one until somebody writes into it.
         """
         known = self.old_record.files.get(entry.successor)
-        if known and entry.successor in self.wanted_paths:
+        if known and entry.successor in self.files_by_path:
             return entry.successor if self.disk.read(entry.successor).has_digest(known.digests) else ""
         likeness = {
             each: (

@@ -111,7 +111,10 @@ def describe_lateness(analysis: Analysis, result: ChainResult, deadline: Fractio
 
 def _write_least(value: Fraction) -> str:
     """Write a time, in ns, that is at least so much: where it is shown with fewer digits, they stay true."""
-    return f">= {_write(value).removeprefix('~')}"
+    text = _write(value)
+    if text.startswith("~"):  # rounded to the nearest, which may be more
+        (text,) = figure_wording.format_compared([value], figure_wording.format_duration, upwards=False)
+    return f">= {text.removeprefix('~')}"
 
 
 def _describe_most(analysis: Analysis, result: ChainResult) -> str:

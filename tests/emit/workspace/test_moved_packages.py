@@ -4,15 +4,20 @@ from __future__ import annotations
 
 import pytest
 
+from archgen.emit.workspace.disk_files import GeneratedFile
 from archgen.emit.workspace.moved_packages import find_moved_packages
 from archgen.emit.workspace.own_code import rename_likely
 
 WANTED = {
-    "src/new_pkg/new_pkg/boss.py",
-    "src/new_pkg/new_pkg/boss_contract.py",
-    "src/eyes/include/eyes/finder_node.hpp",
-    "src/eyes/include/eyes/finder_behaviour.hpp",
-    "src/other/include/other/camera_node.hpp",
+    path.rpartition("/")[2]: [GeneratedFile(path, b"", once=is_once)]
+    for path, is_once in {
+        "src/new_pkg/new_pkg/boss.py": True,
+        "src/new_pkg/new_pkg/clock.py": True,
+        "src/new_pkg/new_pkg/boss_contract.py": False,
+        "src/eyes/include/eyes/finder_node.hpp": False,
+        "src/eyes/include/eyes/finder_behaviour.hpp": True,
+        "src/other/include/other/camera_node.hpp": False,
+    }.items()
 }
 
 
@@ -23,6 +28,21 @@ WANTED = {
             "src/new_pkg/new_pkg/boss.py",
             "import os.path\nif X:\n    from old_pkg.boss_contract import BossPorts\nfrom geometry_msgs.msg import Twist\n",
             [(3, 10, "`old_pkg` has no `boss_contract` any more: it is `new_pkg` now")],
+        ),
+        # A library may have a module that is called as a component is.
+        ("src/new_pkg/new_pkg/clock.py", "from rclpy.clock import Clock\nfrom new_pkg.boss_contract import X\n", []),
+        (
+            "src/new_pkg/test/test_boss.py",
+            "from old_pkg.boss import Boss\nfrom old_pkg.boss_contract import BossFakeNode\nfrom rclpy.clock import Clock\n",
+            [
+                (1, 6, "`old_pkg` has no `boss` any more: it is `new_pkg` now"),
+                (2, 6, "`old_pkg` has no `boss_contract` any more: it is `new_pkg` now"),
+            ],
+        ),
+        (
+            "src/eyes/src/finder_behaviour.cpp",
+            '#include "sight/finder_behaviour.hpp"\n',
+            [(1, 11, "`sight` has no `finder_behaviour.hpp` any more: it is `eyes` now")],
         ),
         ("src/new_pkg/new_pkg/boss.py", "from new_pkg.boss_contract import BossPorts\n", []),
         (

@@ -519,13 +519,24 @@ def test_one_branch_renamed_what_the_other_changed(tmp_path: Path, text: str, ve
     assert verbs(generate(tmp_path, files(new="1\n2 new\nby us too\n3\n")))["new"] == verb
 
 
+def test_git_takes_files_that_are_no_text_as_they_are(tmp_path: Path) -> None:
+    """An asset of a backend may be a picture: `eol` alone says that it is a text, of which git changes the ends of lines."""
+    run_git(tmp_path, "init", "-q")
+    data = b"\x89PNG\r\n\x1a\n\0\0\r\n"
+    generate(tmp_path, [GeneratedFile("logo.png", data), GeneratedFile("a", b"text\n")])
+    run_git(tmp_path, "add", "-A")
+    (tmp_path / "logo.png").unlink()
+    run_git(tmp_path, "checkout", "--", "logo.png")
+    assert (tmp_path / "logo.png").read_bytes() == data
+
+
 def test_attributes_of_the_user_stay(tmp_path: Path) -> None:
     run_git(tmp_path, "init", "-q")
     (tmp_path / ".gitattributes").write_text("*.png binary\n")
     generate(tmp_path, files(a="1"))
     text = (tmp_path / ".gitattributes").read_text()
     assert text.startswith("*.png binary\n# archgen: ")
-    assert "\n/a merge=union eol=lf linguist-generated\n" in text
+    assert "\n/a merge=union text=auto eol=lf linguist-generated\n" in text
     assert (tmp_path / ".archgen" / ".gitattributes").exists()
     (tmp_path / ".gitattributes").write_text(f"{text}*.jpg binary")
     generate(tmp_path, files(b="1"))

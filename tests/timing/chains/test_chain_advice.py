@@ -104,3 +104,5 @@ def test_what_is_known_stays_true_where_it_is_shown_with_fewer_digits() -> None:
     assert shorten_text(f"What is known of it adds up to {_write_least(Fraction(31_946_000_000))}") == (
         "What is known of it adds up to >= 31.9 s"
     )
+    assert _write_least(Fraction(31_999_999_999)) == ">= 31.9 s"
+    assert _write_least(Fraction(31_946_000_000)) == ">= 31.946 s"

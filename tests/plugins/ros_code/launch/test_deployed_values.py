@@ -126,3 +126,9 @@ def test_an_image_of_the_workspace_goes_with_compose(workspace: Path) -> None:
     assert "FROM ros:jazzy-ros-base" in lines
     service = next(iter(yaml.safe_load((workspace / "start/compose/head.yaml").read_text())["services"].values()))
     assert service["image"].startswith("${START_IMAGE:?")
+
+
+def test_units_with_a_profile_wait_for_the_network_that_dds_looks_at_once(workspace: Path) -> None:
+    units = {host: _list_texts(workspace, host)["units"] for host in ("head", "base")}
+    assert "After=network-online.target" in units["head"]
+    assert "After=network-online.target" not in units["base"]
