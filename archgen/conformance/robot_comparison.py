@@ -168,8 +168,9 @@ class _Comparer:
         """Yield findings; where a line of a component type stands for several nodes, what to write for one goes to its instance."""
         nodes: dict[Span, dict[str, None]] = defaultdict(dict)
         for endpoint in self._architecture.endpoints:
-            for place in {endpoint.at, endpoint.message_at} - {NO_SPAN}:
-                nodes[place][endpoint.node] = None
+            for place in (endpoint.at, endpoint.message_at):
+                if place != NO_SPAN:
+                    nodes[place][endpoint.node] = None
         components = {endpoint.port: endpoint.component for endpoint in self._architecture.endpoints}
         for finding in findings:
             shared = nodes.get(finding.span, {})
