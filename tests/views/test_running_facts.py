@@ -90,3 +90,20 @@ def test_the_record(tmp_path: Path) -> None:
     assert second["unknown"] == ["clock"]
     assert "clock" not in second
     assert record["project"]["environment"] == {"RMW": "x"}
+
+
+def test_the_page_of_a_node_names_the_requirements_of_its_components(tmp_path: Path) -> None:
+    lookup = view(
+        checked(
+            tmp_path,
+            "requirements: {R-1: It stops, R-2: It goes}\n"
+            "groups: {g: {components: {a: {role: sink, requirements: [R-1, It is quiet.]}, "
+            "b: {role: sink, requirements: [R-1, R-2]}, c: {role: sink}}}}\n"
+            "nodes: {n: {implements: [a, b]}, m: {implements: c}}\n",
+        )
+    )
+    shown = {}
+    for node in lookup.architecture.nodes.values():
+        (facts,) = (each for each in make_node_blocks(lookup, node) if isinstance(each, Facts))
+        shown[node.id] = {title: text(value) for title, value in facts.rows}.get("Requirements")
+    assert shown == {"n": "R-1 It stops, R-2 It goes", "m": None}

@@ -62,7 +62,8 @@ def list_node_facts(lookup: Lookup, node: Node) -> list[Fact]:
     """Return a node's facts, without those that have no value."""
     architecture = lookup.architecture
     kind = ", ".join(inline_text.NODE_KIND_WORDS[kind] for kind in node.kinds)
-    components = (architecture.components[name] for name in node.implements)
+    components = [architecture.components[name] for name in node.implements]
+    requirement_ids = dict.fromkeys(use.text for each in components for use in each.requirements if use.is_id)
     words = describe_start(node)
     groups = timing_words.format_callback_groups(node)
     parts = (
@@ -74,6 +75,11 @@ def list_node_facts(lookup: Lookup, node: Node) -> list[Fact]:
     facts = [
         Fact(
             "implements", "Implements", inline_text.join_inlines((inline_text.component_link(c),) for c in components)
+        ),
+        Fact(
+            "requirements",
+            "Requirements",
+            inline_text.join_inlines(inline_text.requirement_link(architecture, each) for each in requirement_ids),
         ),
         Fact("ros_name", "ROS name", () if node.is_program else _to_code(node.full_name)),
         Fact("kind", "Kind, status", inline_text.to_inlines(f"{kind}, ", *inline_text.value_or_unknown(node.status))),

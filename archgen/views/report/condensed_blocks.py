@@ -218,7 +218,7 @@ def _condense_facts(node: Node, component: Component, facts: Sequence[Fact]) -> 
         yield "Package and host", _join_named(places)
     if times := [fact for fact in facts if fact.key in {"timing", "activity"}]:
         yield "Timing", _join_named(times)
-    said_keys = {*_OWN_FACTS, "package", "host", "owner", "timing", "activity"}
+    said_keys = {*_OWN_FACTS, "requirements", "package", "host", "owner", "timing", "activity"}
     yield from (print_fact(fact) for fact in facts if fact.key not in said_keys)
 
 
