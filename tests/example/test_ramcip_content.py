@@ -105,15 +105,14 @@ def test_every_connection_names_an_output_that_exists(components: dict[str, Tree
     assert [reference for reference in sorted(references) if not reached(reference, components)] == []
 
 
-def test_every_type_but_five_is_mapped_by_the_project(project: Tree, components: dict[str, Tree]) -> None:
+def test_every_type_is_mapped_by_the_project(project: Tree, components: dict[str, Tree]) -> None:
     used = {
         port["type"]
         for component in components.values()
         for port in ports(component, "outputs").values()
         if port.get("medium") != "physical"
     }
-    shipped = {"Laser scan", "Odometry", "Battery state", "Velocity command", "Occupancy grid"}
-    assert used - set(project["types"]) == shipped
+    assert used <= set(project["types"])
 
 
 def test_nine_main_files_hold_one_group_each() -> None:
