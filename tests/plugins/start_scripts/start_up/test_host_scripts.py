@@ -211,7 +211,7 @@ def test_a_lifecycle_node_that_respawns_is_brought_into_its_state_again(tmp_path
     stage = Stage(tmp_path / "stage", {"arm_node": "arm"}, services={"/arm/change_state": "arm"})
     run = Run(script, stage)
     run.wait_for("up        all: 1 step")
-    os.kill(stage.read_process("arm"), signal.SIGKILL)
+    os.kill(stage.read_process("arm"), signal.SIGTERM)
     run.wait_until(lambda: stage.journal.count("activate /arm") == 2)
     run.wait_until(lambda: run.output.count("up        arm") == 2)
     run.send(signal.SIGINT)
