@@ -222,8 +222,11 @@ class _Planner:
         self.writes[file.path] = file
         if on_disk.exists:
             self.modes[file.path] = _choose_mode(file, entry, on_disk)
-        meanings = _judge(file, file.data, {}).meanings if file.once else {}
-        self.entries[file.path] = self._record(file, entry, digest, meanings)
+        report = _judge(file, file.data, {}) if file.once else CodeReport()
+        if file.once and not report.findings and not has_lost_names(file.offered_words, {}):
+            # Until somebody writes into it, the next run need not judge it again.
+            self.fits.add(digest_fit(file, digest, {}, report.meanings))
+        self.entries[file.path] = self._record(file, entry, digest, report.meanings)
         was_deleted = verb == "new" and file.once and entry is not None
         self.steps.append(
             FileStep(file.path, verb, "it was gone, and is written anew: an empty one" if was_deleted else "")
