@@ -8,6 +8,7 @@ only some of `example`, `check1000`, `since1000`, `check10000`, `diff1000`, `bui
 
 from __future__ import annotations
 
+import itertools
 import os
 import re
 import resource
@@ -36,6 +37,12 @@ for name in sys.argv[1:]:
 
 _ENVIRONMENT = {name: value for name, value in os.environ.items() if name != "PYTHONDONTWRITEBYTECODE"}
 """As where archgen is installed: its bytecode is kept. `main` adds a picture cache of our own."""
+_RUN_NUMBERS = itertools.count()
+
+
+def _number_run() -> dict[str, str]:
+    """Return the variables of a run that is like no earlier one: a check that is repeated would say again what that one said."""
+    return {"ARCHGEN_BENCHMARK_RUN": str(next(_RUN_NUMBERS)), **_ENVIRONMENT}
 
 
 def seconds(command: list[str], runs: int = 5, before: Callable[[], None] = lambda: None) -> float:
@@ -45,8 +52,9 @@ def seconds(command: list[str], runs: int = 5, before: Callable[[], None] = lamb
 
 def _once(command: list[str], before: Callable[[], None]) -> float:
     before()
+    variables = _number_run()
     start = time.perf_counter()
-    done = subprocess.run(command, cwd=_ROOT, env=_ENVIRONMENT, capture_output=True, check=False)
+    done = subprocess.run(command, cwd=_ROOT, env=variables, capture_output=True, check=False)
     taken = time.perf_counter() - start
     if done.returncode:
         sys.exit(f"{' '.join(command)} ended with {done.returncode}:\n{done.stderr.decode()}{done.stdout.decode()}")
@@ -75,6 +83,9 @@ def example() -> None:
     print(f"\nexample_ramcip: parsing its files by libyaml's events takes {base:.3f} s")
     row("archgen --help", seconds(archgen("--help")), base)
     row("check", seconds(archgen("check", _EXAMPLE)), base)
+    _ENVIRONMENT["ARCHGEN_BENCHMARK_RUN"] = "0"
+    row("check, nothing changed", seconds(archgen("check", _EXAMPLE)), base)
+    del _ENVIRONMENT["ARCHGEN_BENCHMARK_RUN"]
     with tempfile.TemporaryDirectory() as place:
         out = Path(place)
         row("build, the first time", seconds(archgen("build", _EXAMPLE, "-o", out / "all"), 3, forget), base)

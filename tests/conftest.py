@@ -17,6 +17,7 @@ from typing import TYPE_CHECKING
 
 import pytest
 
+from archgen import cache
 from archgen.derivation import derive_low_level
 from archgen.diagnostics.diagnostic import Diagnostic
 from archgen.emit import text
@@ -106,6 +107,8 @@ def pytest_configure(config: pytest.Config) -> None:
     # Who hands tests to workers waits for these as long as they take.
     if hasattr(config, "workerinput") or not config.getoption("numprocesses", None):
         bound_waits()
+    # A test that changes something in this process and runs a verb again wants to see what that does.
+    cache.KEPT_VERBS = ()
     config.stash[_HIDING] = ToolHiding(Path(os.environ["XDG_CACHE_HOME"]) / "bare-commands")
     # It reads where the cache is.
     from tests import forked_templates, kept_workers

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 
-KEPT_VERBS = ("check", "generate")
+KEPT_VERBS: tuple[str, ...] = ("check", "generate")
 """Verbs whose runs are kept: their words follow from what they read, not from the time, nor from what git or somebody at the keyboard says."""
 
 

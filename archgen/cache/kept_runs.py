@@ -1,8 +1,8 @@
 """A run that would hear from the disk what an earlier one heard says at once what that one said.
 
 What a verb says follows from its words, its surroundings, its code, and what the disk answers. All that a run asks of the
-disk is noted by the functions of `os` and `io` through which all Python code asks. A run that writes, starts a process or opens
-a connection is not kept, nor is one of whose inputs any changed just before or during it. Decision 53 has the proof.
+disk is noted by the functions of `os` and `io` through which all Python code asks. A run that writes or starts a process is not
+kept, nor is one of whose inputs any changed just before or during it. Decision 53 has the proof.
 """
 
 from __future__ import annotations

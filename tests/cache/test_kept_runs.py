@@ -13,6 +13,7 @@ from pathlib import Path
 
 import pytest
 
+from archgen import cache
 from archgen.cache import find_cache_path, kept_runs
 from archgen.cache.kept_runs import RunKeeper
 from tests.measured_project import PROJECT
@@ -24,6 +25,7 @@ _SLICE = "groups: {g: {components: {c: {outputs: {o: T}}}}}\n"
 @pytest.fixture(autouse=True)
 def _empty_cache(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[None]:
     monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "cache"))
+    monkeypatch.setattr(cache, "KEPT_VERBS", ("check", "generate"))
     monkeypatch.setattr(kept_runs, "_SETTLED_NANOSECONDS", -10_000_000)
     # The code of this process is more than that of any run.
     monkeypatch.setattr(kept_runs, "_list_code", lambda: {("bytes", "toy.py"): ""})
