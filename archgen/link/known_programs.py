@@ -73,7 +73,8 @@ def find_shadowed_packages(architecture: Architecture) -> Iterator[Diagnostic]:
     """Yield nodes for which a package would be generated that hides the one of this name that the library knows."""
     distro = choose_distro(architecture.distro)
     for node in architecture.nodes.values():
-        if node.status is None and node.is_generated and node.package in list_shipped_packages(distro):
+        is_open = node.status is None and node.is_generated and node.package is not None
+        if is_open and node.package in list_shipped_packages(distro):
             message = (
                 f"`archgen generate` would make the package `{node.package}` for `{node.id}`, and hide the one that ROS users "
                 "install under this name"
