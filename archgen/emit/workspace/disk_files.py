@@ -141,16 +141,19 @@ class DiskReader:
             return DiskFile(obstacle="is a link", obstacle_path=path)
         if stat.S_ISDIR(status.st_mode):
             return DiskFile(obstacle="is a folder", obstacle_path=path)
-        digest = digest_named_file(name, status.st_size) if stat.S_ISREG(status.st_mode) else None
+        data = b""
+        if not stat.S_ISREG(status.st_mode):
+            digest = None
+        elif status.st_size <= _MAX_TEXT_BYTES:
+            data = self.read_data(path)
+            digest = hashlib.sha256(data).hexdigest()
+        else:
+            digest = digest_named_file(name, status.st_size)
         if digest is None:
             return DiskFile(obstacle="is no plain file", obstacle_path=path)
-        return DiskFile(
-            digest, stat.S_IMODE(status.st_mode), digest_with_line_feeds=self._end_lines_alike(path, status.st_size)
-        )
-
-    def _end_lines_alike(self, path: str, size: int) -> str | None:
-        data = self.read_data(path) if size <= _MAX_TEXT_BYTES else b""
-        return hashlib.sha256(data.replace(b"\r\n", b"\n")).hexdigest() if b"\r\n" in data else None
+        plain_data = data.replace(b"\r\n", b"\n") if b"\r\n" in data else data
+        plain_digest = hashlib.sha256(plain_data).hexdigest() if plain_data is not data else None
+        return DiskFile(digest, stat.S_IMODE(status.st_mode), digest_with_line_feeds=plain_digest)
 
     def read_data(self, path: str) -> bytes:
         """Return the bytes of a file that is there."""
