@@ -1,11 +1,10 @@
-"""Write `archgen/language/comparison_tables.py`: how a comparison of two versions reads, weighs and calls each key."""
+"""Make the tables by which two versions are compared: how each key is read, weighed and called."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 
 from language_description import SLICE, Description, Part, PlainData, list_accepted
-from language_tables import WIDTH, wrap_items
 
 EFFECTS = ("text", "system", "timing")
 """How far a change reaches, from the least."""
@@ -23,57 +22,16 @@ _OTHER_KINDS = frozenset({"message"})
 """Kinds of elements that a key may name although no file lists them: they follow from what other elements say."""
 _VERB_COUNT = 2
 _LIST_FORMS = {"counts": "list", "headed": "value"}
-_HEAD = '''\
-"""How two versions are compared, as tables. Written by `make language` from the description in `language/`: edit that.
-
-Without an `effect` a change reaches as far as timing; without `worse` it makes no figure worse; without a `form` the value
-is compared as it is. A name with a dot stands for all keys that begin with it. `language/README.md` explains each word.
-"""
-
-# fmt: off
-from __future__ import annotations
-
-from collections.abc import Mapping
-from typing import Literal, TypedDict
-
-Reach = Literal["text", "system", "timing"]
-
-
-class KeyFacts(TypedDict, total=False):
-    """What the comparison of a key needs to know."""
-
-    form: str
-    inner: str
-    attribute: str
-    default: str | int | tuple[str, ...]
-    names: str
-    effect: Reach
-    worse: Literal["less", "more", "always"]
-    noun: str
-    verb: str
-    verbs: tuple[str, str]
-    new_verb: str
-
-
-'''
 Facts = dict[str, PlainData]
 
 
-def make_comparison_tables(description: Description) -> str:
-    """Return the text of the module."""
+def make_comparison_tables(description: Description) -> dict[str, PlainData]:
+    """Return the tables by name."""
     compared = _list_compared(description)
-    effects = [f'"{kind}": "{description.kinds[kind]["effect"]}"' for kind in compared]
-    lines = [
-        f"{_HEAD}KIND_EFFECTS: Mapping[str, Reach] = {{",
-        *wrap_items(effects, "    "),
-        "}",
-        '"""How far a change of an element of each kind reaches at most."""',
-        "KEY_FACTS: Mapping[str, Mapping[str, KeyFacts]] = {",
-        *(line for kind in compared for line in _format_kind(kind, list_key_facts(description, kind))),
-        "}",
-        '"""What is compared of each kind, in the order of its keys."""',
-    ]
-    return "\n".join([*lines, ""])
+    return {
+        "KIND_EFFECTS": {kind: description.kinds[kind]["effect"] for kind in compared},
+        "KEY_FACTS": {kind: list_key_facts(description, kind) for kind in compared},
+    }
 
 
 def _list_compared(description: Description) -> list[str]:
@@ -195,19 +153,3 @@ def _can_be_read(key: Part, description: Description) -> bool:
     """Whether a comparison knows what to do with a key: the keys below it are compared, or it says what is."""
     part = description.type_of(key)
     return "keys" not in part or bool({"form", "effect", "told"} & {*part, *key})
-
-
-def _format_kind(kind: str, rows: Mapping[str, Facts]) -> Iterator[str]:
-    yield f'    "{kind}": {{'
-    for name, facts in rows.items():
-        items = [f'"{word}": {_format_fact(value)}' for word, value in facts.items()]
-        line = f'        "{name}": {{{", ".join(items)}}},'
-        lines = [f'        "{name}": {{', *wrap_items(items, "            "), "        },"]
-        yield from [line] if len(line) <= WIDTH else lines
-    yield "    },"
-
-
-def _format_fact(value: PlainData) -> str:
-    if isinstance(value, list):
-        return f"({', '.join(map(_format_fact, value))}{',' if len(value) == 1 else ''})"
-    return f'"{value}"' if isinstance(value, str) else str(value)

@@ -20,7 +20,6 @@ from language_description import (
     list_accepted,
     read_description_file,
 )
-from language_tables import format_names, format_table
 
 _PART_WORDS = frozenset(
     {
@@ -31,19 +30,6 @@ _PART_WORDS = frozenset(
 """The words of a part in `record.yaml`; `language/README.md` says what each means."""
 _VALUE_WORDS = ("type", "values", "accepts", "items", "entries", "unit", "either", "section", "schema")
 """Words that say what stands at a key."""
-_HEAD = '''\
-"""How the resolved record is written. Made by `make language` from the description in `language/`: edit that, never this.
-
-What stands at a key: `flag` where only true is written, a unit for a quantity in it, the name of a part with keys of its
-own (`part[]` for a list of such, `part{}` for a mapping by id), `annotations`; an empty text for plain data.
-"""
-
-# fmt: off
-from __future__ import annotations
-
-from collections.abc import Mapping
-
-'''
 
 
 @dataclass(frozen=True)
@@ -238,28 +224,17 @@ def _make_value_schema(record: ResolvedRecord, value: Part) -> Part:
     return {**schema, **says}
 
 
-def make_record_tables(record: ResolvedRecord) -> str:
-    """Return the text of the module that says how the record is written."""
-    sections = record.sections
+def make_record_tables(record: ResolvedRecord) -> dict[str, PlainData]:
+    """Return the tables by which the record is written, by name."""
     names = dict.fromkeys(_list_written(record))
-    tables = [
-        format_table(
-            "RECORD_SECTIONS",
-            {name: _name_form(record, section) for name, section in sections.items()},
-            "The members of the record in their order, and what stands there.",
-        ),
-        format_names(
-            "LASTING_SECTIONS",
-            (name for name, section in sections.items() if section.keys() & {"required", "always"}),
-            "Those that are written where they are empty, too.",
-        ),
-        format_table(
-            "RECORD_KEYS",
-            {name: {key: _name_form(record, part) for key, part in record.keys_of(name).items()} for name in names},
-            "The keys of each part in their order, and what stands there.",
-        ),
-    ]
-    return "\n".join([_HEAD + tables[0], *tables[1:]]) + "\n"
+    lasting = (name for name, section in record.sections.items() if section.keys() & {"required", "always"})
+    return {
+        "RECORD_SECTIONS": {name: _name_form(record, section) for name, section in record.sections.items()},
+        "LASTING_SECTIONS": sorted(lasting),
+        "RECORD_KEYS": {
+            name: {key: _name_form(record, part) for key, part in record.keys_of(name).items()} for name in names
+        },
+    }
 
 
 def _list_written(record: ResolvedRecord) -> Iterator[str]:

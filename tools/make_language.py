@@ -12,7 +12,7 @@ from language_comparison import find_comparison_faults, make_comparison_tables
 from language_description import DescriptionError, add_rule_settings, find_faults, load_description, make_schema
 from language_page import renew_page
 from language_record import load_record, make_record_schema, make_record_tables
-from language_tables import make_tables
+from language_tables import format_tables, make_tables
 
 from archgen.compare.kinds import KIND_ORDER
 from archgen.findings.rule_table import index_rules
@@ -29,6 +29,7 @@ def make_files() -> Mapping[Path, str]:
         message = "\n".join(faults)
         raise DescriptionError(message)
     record = load_record(description)
+    tables = {**make_tables(description), **make_comparison_tables(description), **make_record_tables(record)}
     page = ROOT / "docs" / "language.md"
     backend_schema = ROOT / "schemas" / "backend.schema.json"
     comparison_schema = ROOT / "schemas" / "diff.schema.json"
@@ -37,10 +38,8 @@ def make_files() -> Mapping[Path, str]:
         ROOT / "schemas" / "archgen.schema.json": json.dumps(make_schema(description), indent=2) + "\n",
         comparison_schema: _renew_kinds(comparison_schema.read_text(encoding="utf-8")),
         backend_schema: _renew_hint_kinds(backend_schema.read_text(encoding="utf-8"), description.kinds_with("hints")),
-        ROOT / "archgen" / "language" / "language_tables.py": make_tables(description),
-        ROOT / "archgen" / "language" / "comparison_tables.py": make_comparison_tables(description),
+        ROOT / "archgen" / "language" / "tables.json": format_tables(tables),
         ROOT / "schemas" / "resolved.schema.json": json.dumps(make_record_schema(record), indent=2) + "\n",
-        ROOT / "archgen" / "language" / "record_tables.py": make_record_tables(record),
     }
 
 

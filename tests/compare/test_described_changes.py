@@ -14,8 +14,8 @@ import yaml
 from archgen import pipeline
 from archgen.compare.compare_versions import compare_versions
 from archgen.compare.kinds import ELEMENT_KINDS
-from archgen.language.comparison_tables import KEY_FACTS
 from archgen.language.key_paths import SLICE, find_inner_part
+from archgen.language.language_tables import KEY_FACTS
 from archgen.products.compared_versions import make_comparison_input
 from tests.compare.test_element_kinds import READ_OFF_PATTERNS, ROBOT
 

@@ -12,7 +12,7 @@ from archgen.compare.kinds.key_readers import READERS
 from archgen.compare.kinds.key_spec import ReadContext
 from archgen.compare.kinds.kind_spec import make_form_reader
 from archgen.compare.matched_ids import MatchedIds
-from archgen.language.comparison_tables import KEY_FACTS, KeyFacts
+from archgen.language.language_tables import KEY_FACTS, KeyFacts
 from archgen.products.compared_versions import make_comparison_input
 from tests.compare.test_element_kinds import ROBOT
 

@@ -6,12 +6,11 @@ import ast
 import json
 from collections.abc import Iterator
 from pathlib import Path
-from typing import get_args
 
-from archgen.language.language_tables import ANNOTATED_KINDS, KindName, SectionName
+from archgen.language.language_tables import ANNOTATED_KINDS, KEYS
 from tests.running import ROOT
 
-NAMES = frozenset((*get_args(KindName), *get_args(SectionName), "components", "inputs", "outputs", "composed"))
+NAMES = frozenset((*KEYS, *KEYS["slice"], "components", "inputs", "outputs", "composed"))
 LEAST = 6
 """So many names of kinds or sections make a list of them."""
 REASONS = {

@@ -12,8 +12,7 @@ from archgen.compare.kinds.kind_spec import NAME_FEATURES, KindSpec, values_feat
 from archgen.compare.kinds.project_kinds import PROJECT_KINDS
 from archgen.compare.kinds.ros_kinds import ROS_KINDS
 from archgen.compare.kinds.system_kinds import SYSTEM_KINDS
-from archgen.language.comparison_tables import KEY_FACTS, KIND_EFFECTS
-from archgen.language.language_tables import SECTION_KINDS
+from archgen.language.language_tables import KEY_FACTS, KIND_EFFECTS, SECTION_KINDS
 
 _SPECIFIED_KINDS = {
     kind.name: kind for kind in (*PROJECT_KINDS, COMPONENT_TYPE, *FUNCTIONAL_KINDS, *ROS_KINDS, *SYSTEM_KINDS)

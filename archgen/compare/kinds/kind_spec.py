@@ -25,7 +25,7 @@ from archgen.compare.normal_values import (
 )
 from archgen.compare.version_pair import ElementKey
 from archgen.frozen import dataclass, field
-from archgen.language.comparison_tables import KEY_FACTS, KIND_EFFECTS, KeyFacts
+from archgen.language.language_tables import KEY_FACTS, KIND_EFFECTS, KeyFacts
 from archgen.model.component import Component, list_component_ports
 from archgen.model.parameter import format_parameter
 from archgen.model.path_resolver import title_from_id

@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Mapping
 from typing import Any
 
-from archgen.language.record_tables import LASTING_SECTIONS, RECORD_KEYS, RECORD_SECTIONS
+from archgen.language.language_tables import LASTING_SECTIONS, RECORD_KEYS, RECORD_SECTIONS
 from archgen.model.architecture import PortEdge
 from archgen.model.component import Component, Connection
 from archgen.model.node import Topic
