@@ -37,24 +37,10 @@ if TYPE_CHECKING:
     from archgen.model.architecture import Architecture
     from archgen.project import TrackedProject
 
-__all__ = [
-    "SHIPPED_RULES",
-    "CheckedProject",
-    "UnknownVariantError",
-    "VersionCache",
-    "check_at_revision",
-    "check_loaded_project",
-    "check_project",
-    "check_text",
-    "check_tracked_project",
-    "index_all_rules",
-    "judge_project",
-    "keep_variant_findings",
-    "link_slices",
-    "list_variant_names",
-    "stand_in_variants",
-    "transform_project",
-]
+__all__ = ["SHIPPED_RULES", "CheckedProject", "UnknownVariantError", "VersionCache", "check_at_revision"]
+__all__ += ["check_loaded_project", "check_project", "check_text", "check_tracked_project", "index_all_rules"]
+__all__ += ["judge_project", "keep_variant_findings", "link_slices", "list_variant_names", "stand_in_variants"]
+__all__ += ["transform_project"]
 
 
 class VersionCache:

@@ -19,15 +19,7 @@ if TYPE_CHECKING:
     from archgen.pipeline import CheckedProject
 
 _FURTHER_KINDS = (
-    "components",
-    "connections",
-    "edges",
-    "topics",
-    "steps",
-    "parameters",
-    "operations",
-    "start_up",
-    "backends",
+    *("components", "connections", "edges", "topics", "steps", "parameters", "operations", "start_up", "backends"),
 )
 """What can be listed and is no section of elements."""
 _UNLISTED_SECTIONS = frozenset({"libraries"})

@@ -9,10 +9,4 @@ changes are one item to people.
 from archgen.compare.architecture_version import ArchitectureVersion
 from archgen.compare.comparison import ChainChange, Change, Comparison, PartnerBreak
 
-__all__ = [
-    "ArchitectureVersion",
-    "ChainChange",
-    "Change",
-    "Comparison",
-    "PartnerBreak",
-]
+__all__ = ["ArchitectureVersion", "ChainChange", "Change", "Comparison", "PartnerBreak"]

@@ -230,11 +230,7 @@ def _merge_pairs(changes: Iterable[BoundaryChange]) -> Iterator[BoundaryChange]:
     merged: dict[object, BoundaryChange] = {}
     for change in changes:
         key = (
-            change.kind,
-            change.interface_id,
-            change.old_givers,
-            change.old_takers,
-            change.figures,
+            *(change.kind, change.interface_id, change.old_givers, change.old_takers, change.figures),
             change.missed_deadline,
         )
         known = merged.get(key)

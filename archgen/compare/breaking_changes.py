@@ -43,27 +43,11 @@ from archgen.frozen import replace
 from archgen.model.project_settings import AcceptedChange, BreakPolicy, ReviewSettings
 
 _LOSS_FINDERS = (
-    find_lost_connections,
-    find_unmade_connections,
-    find_redirected_connections,
-    find_changed_distro,
-    find_retyped_outputs,
-    find_redefined_messages,
-    find_renamed_topics,
-    find_parted_ends,
-    find_weakened_outputs,
-    find_weakened_words,
-    find_deprecated_types,
-    find_weakened_sizes,
-    find_unserved_requirements,
-    find_rewritten_requirements,
-    find_weakened_policies,
-    find_cut_steps,
-    find_changed_meanings,
-    find_changed_frames,
-    find_changed_parameters,
-    find_renamed_sources,
-    find_foreign_edits,
+    *(find_lost_connections, find_unmade_connections, find_redirected_connections, find_changed_distro),
+    *(find_retyped_outputs, find_redefined_messages, find_renamed_topics, find_parted_ends, find_weakened_outputs),
+    *(find_weakened_words, find_deprecated_types, find_weakened_sizes, find_unserved_requirements),
+    *(find_rewritten_requirements, find_weakened_policies, find_cut_steps, find_changed_meanings, find_changed_frames),
+    *(find_changed_parameters, find_renamed_sources, find_foreign_edits),
 )
 _WORD_LOSS_FINDERS = (find_rewritten_requirements, find_changed_meanings, find_foreign_edits)
 """Those of them that titles and texts alone may concern."""

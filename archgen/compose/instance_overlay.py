@@ -23,15 +23,7 @@ _EXCLUSIVE_KEYS: tuple[tuple[frozenset[str], frozenset[str]], ...] = (
 _PART_KINDS = {"inputs": "input", "outputs": "output", "components": "component"}
 _KEYS_OF_IDS = frozenset(
     {
-        "parameters",
-        "operations",
-        "performance",
-        "urls",
-        "containers",
-        "frames",
-        "properties",
-        "calls",
-        "uses",
+        *("parameters", "operations", "performance", "urls", "containers", "frames", "properties", "calls", "uses"),
         "environment",
     }
     | {"publishes", "subscribes", "serves", "inputs", "outputs"}

@@ -10,63 +10,23 @@ _WHOLE_MODEL_RULES = frozenset(
     {
         "borrowed-message",
         # Timing: one figure that could not be read changes the bounds of everything that shares a host with it.
-        "broken-chain",
-        "broken-promise",
-        "broken-step",
-        "deadlocked-trigger",
-        "endless-trigger",
-        "late-chain",
-        "lost-samples",
-        "open-chain",
-        "overloaded-host",
-        "period-conflict",
-        "saturated-link",
-        "short-queue",
-        "slow-component",
-        "slow-service",
-        "stale-input",
+        *("broken-chain", "broken-promise", "broken-step", "deadlocked-trigger", "endless-trigger", "late-chain"),
+        *("lost-samples", "open-chain", "overloaded-host", "period-conflict", "saturated-link", "short-queue"),
+        *("slow-component", "slow-service", "stale-input"),
         # What nothing refers to, and what nothing says: that may be what could not be read.
-        "disconnected-component",
-        "empty-reference",
-        "empty-view",
-        "idle-executor",
-        "missing-detail",
-        "own-source",
-        "uncovered-requirement",
-        "unneeded-exception",
-        "unmet-ready",
-        "unlinked-hosts",
-        "unmapped-component",
-        "unpublished-output",
-        "unread-output",
-        "unset-parameter",
-        "unsubscribed-input",
-        "unused-type",
+        *("disconnected-component", "empty-reference", "empty-view", "idle-executor", "missing-detail", "own-source"),
+        *("uncovered-requirement", "unneeded-exception", "unmet-ready", "unlinked-hosts", "unmapped-component"),
+        *("unpublished-output", "unread-output", "unset-parameter", "unsubscribed-input", "unused-type"),
         "unverified-requirement",
     }
 )
 """Rules that judge the model as a whole: they wait until everything is read and linked."""
 _LACK_RULES = frozenset(
     {
-        "absent-core",
-        "circular-start",
-        "half-written",
-        "idle-timing",
-        "incompatible-qos",
-        "missing-property",
-        "remote-resource",
-        "role-mismatch",
-        "silent-node",
-        "two-clocks",
-        "two-domains",
-        "unfed-input",
-        "unjustified-component",
-        "unjustified-node",
-        "unknown-message",
-        "unmapped-type",
-        "unlike-program",
-        "unpublished-frame",
-        "unstarted-program",
+        *("absent-core", "circular-start", "half-written", "idle-timing", "incompatible-qos", "missing-property"),
+        *("remote-resource", "role-mismatch", "silent-node", "two-clocks", "two-domains", "unfed-input"),
+        *("unjustified-component", "unjustified-node", "unknown-message", "unmapped-type", "unlike-program"),
+        *("unpublished-frame", "unstarted-program"),
     }
 )
 """Rules that report what an element lacks (or that depend on a default or a `status: planned`): they wait for an element
@@ -74,20 +34,9 @@ in which something could not be read.
 """
 _FILE_RULES = frozenset(
     {
-        "borrowed-call",
-        "incompatible-qos",
-        "misplaced-frame",
-        "role-mismatch",
-        "unaccounted-topic",
-        "unchecked-message",
-        "unjustified-node",
-        "unknown-parameter",
-        "unlisted-medium",
-        "unmapped-type",
-        "unnamed-source",
-        "unpublished-frame",
-        "unused-ros-setting",
-        "wrong-section",
+        *("borrowed-call", "incompatible-qos", "misplaced-frame", "role-mismatch", "unaccounted-topic"),
+        *("unchecked-message", "unjustified-node", "unknown-parameter", "unlisted-medium", "unmapped-type"),
+        *("unnamed-source", "unpublished-frame", "unused-ros-setting", "wrong-section"),
     }
 )
 """Rules that ask what another file may say of a type, a message or a topic: they wait while a whole file or section, or a

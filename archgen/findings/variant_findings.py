@@ -12,38 +12,17 @@ from archgen.model.variant import BASE_NAME
 
 UNUSED_RULES = frozenset(
     {
-        "uncovered-requirement",
-        "unread-input",
-        "unread-output",
-        "unused-ignore",
-        "unused-node",
-        "unused-parameter-file",
-        "unused-type",
+        *("uncovered-requirement", "unread-input", "unread-output", "unused-ignore", "unused-node"),
+        *("unused-parameter-file", "unused-type"),
     }
 )
 """Rules that report what nothing needs: what the project itself or one of its variants needs, something needs."""
 MISSING_RULES = frozenset(
     {
-        "absent-core",
-        "borrowed-call",
-        "borrowed-message",
-        "disconnected-component",
-        "empty-reference",
-        "half-written",
-        "missing-detail",
-        "unaccounted-topic",
-        "unfed-input",
-        "unfed-output",
-        "unjustified-component",
-        "unjustified-node",
-        "unlinked-hosts",
-        "unmapped-component",
-        "unmapped-type",
-        "unnamed-source",
-        "unpublished-frame",
-        "unpublished-output",
-        "unset-parameter",
-        "unsubscribed-input",
+        *("absent-core", "borrowed-call", "borrowed-message", "disconnected-component", "empty-reference"),
+        *("half-written", "missing-detail", "unaccounted-topic", "unfed-input", "unfed-output"),
+        *("unjustified-component", "unjustified-node", "unlinked-hosts", "unmapped-component", "unmapped-type"),
+        *("unnamed-source", "unpublished-frame", "unpublished-output", "unset-parameter", "unsubscribed-input"),
     }
 )
 """Rules that report what is not written: what every variant writes is not missing in the project itself."""

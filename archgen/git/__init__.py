@@ -19,23 +19,7 @@ from archgen.git.repository_lookup import (
     resolve_revision,
 )
 
-__all__ = [
-    "BaseCommit",
-    "GitError",
-    "GitObjects",
-    "GitRepository",
-    "NoCommitsError",
-    "NoRepositoryError",
-    "ShallowError",
-    "TreeEntry",
-    "UnknownRevisionError",
-    "find_branch_base",
-    "find_common_commit",
-    "find_object_ids",
-    "find_repository",
-    "find_unpushed_base",
-    "list_cut_commits",
-    "list_first_parents",
-    "look_up_tree",
-    "resolve_revision",
-]
+__all__ = ["BaseCommit", "GitError", "GitObjects", "GitRepository", "NoCommitsError", "NoRepositoryError"]
+__all__ += ["ShallowError", "TreeEntry", "UnknownRevisionError", "find_branch_base", "find_common_commit"]
+__all__ += ["find_object_ids", "find_repository", "find_unpushed_base", "list_cut_commits", "list_first_parents"]
+__all__ += ["look_up_tree", "resolve_revision"]

@@ -225,13 +225,7 @@ MAX_MODEL_BYTES = 64_000_000
 """So much is read of one file, or of all members of an archive together."""
 ZIP_BEGINNING = b"PK\x03\x04"
 ARCHIVE_DAMAGE = (
-    zipfile.BadZipFile,
-    zlib.error,
-    lzma.LZMAError,
-    RuntimeError,
-    EOFError,
-    ValueError,
-    struct.error,
+    *(zipfile.BadZipFile, zlib.error, lzma.LZMAError, RuntimeError, EOFError, ValueError, struct.error),
     NotImplementedError,
 )
 """What Python's zipfile raises for archives that are none, broken, or locked by a password."""

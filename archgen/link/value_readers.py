@@ -226,16 +226,8 @@ VALUE_READERS: Mapping[str, ValueReader | None] = {
     **dict.fromkeys(("text", "prose", "requirement_word", "topic_name_or_nothing"), mapping_values.get_text),
     **dict.fromkeys(
         (
-            "system_user",
-            "frame_name",
-            "report.date",
-            "project.id",
-            "parameter_declaration.from",
-            "forge",
-            "repository_address",
-            "host_address",
-            "signature.revision",
-            "version_digits",
+            *("system_user", "frame_name", "report.date", "project.id", "parameter_declaration.from", "forge"),
+            *("repository_address", "host_address", "signature.revision", "version_digits"),
         ),
         mapping_values.get_text,
     ),

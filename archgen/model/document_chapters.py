@@ -5,24 +5,8 @@ from __future__ import annotations
 from archgen.frozen import dataclass
 
 GENERATED_CHAPTERS = (
-    "overview",
-    "between_partners",
-    "use_cases",
-    "groups",
-    "frames",
-    "variants",
-    "deployment",
-    "start_up",
-    "timing",
-    "chains",
-    "views",
-    "types",
-    "connections",
-    "requirements",
-    "properties",
-    "open_points",
-    "statistics",
-    "glossary",
+    *("overview", "between_partners", "use_cases", "groups", "frames", "variants", "deployment", "start_up", "timing"),
+    *("chains", "views", "types", "connections", "requirements", "properties", "open_points", "statistics", "glossary"),
 )
 """The generated chapters by their names in `report.chapters`, in their default order."""
 

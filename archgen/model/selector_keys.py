@@ -123,10 +123,7 @@ def list_key_values(architecture: Architecture, key: str) -> set[str]:
     """Return what a key could be followed by, as the elements have it; nothing for keys of conditions and types."""
     if key == "tag":
         kinds = (
-            architecture.components,
-            architecture.groups,
-            architecture.nodes,
-            architecture.requirements,
+            *(architecture.components, architecture.groups, architecture.nodes, architecture.requirements),
             architecture.hosts,
         )
         return {tag for elements in kinds for element in elements.values() for tag in element.tags}

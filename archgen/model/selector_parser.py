@@ -19,25 +19,8 @@ from archgen.diagnostics.suggestions import find_closest
 from archgen.frozen import dataclass
 
 SELECTOR_KEYS = (
-    "tag",
-    "owner",
-    "status",
-    "type",
-    "medium",
-    "role",
-    "host",
-    "package",
-    "requirement",
-    "behaviour",
-    "finding",
-    "node",
-    "is",
-    "library",
-    "parameter",
-    "property",
-    "variant",
-    "deprecated",
-    "use_case",
+    *("tag", "owner", "status", "type", "medium", "role", "host", "package", "requirement", "behaviour", "finding"),
+    *("node", "is", "library", "parameter", "property", "variant", "deprecated", "use_case"),
 )
 ALL_STEPS = -1
 """Any number of steps."""

@@ -4,13 +4,5 @@ from archgen.passes.pass_running import PASSES, TransformedProject, UnknownPassE
 from archgen.passes.pass_shape import Pass, PassWork
 from archgen.passes.project_tree import ProjectTree
 
-__all__ = [
-    "PASSES",
-    "Pass",
-    "PassWork",
-    "ProjectTree",
-    "TransformedProject",
-    "UnknownPassError",
-    "order_passes",
-    "run_passes",
-]
+__all__ = ["PASSES", "Pass", "PassWork", "ProjectTree", "TransformedProject", "UnknownPassError", "order_passes"]
+__all__ += ["run_passes"]

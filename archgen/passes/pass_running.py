@@ -21,16 +21,8 @@ from archgen.project import LoadedProject
 from archgen.syntax.yaml_tree import MappingNode
 
 _ALL_PASSES = (
-    COMPLETE_NAMES,
-    NORMALISE_CONNECTIONS,
-    CONNECT_COMPONENTS,
-    CONNECT_PORTS,
-    CONNECT_TYPES,
-    RESOLVE_INSTANCES,
-    ENVELOPE,
-    REMOVE_GENERICS,
-    FLATTEN,
-    MONITOR,
+    *(COMPLETE_NAMES, NORMALISE_CONNECTIONS, CONNECT_COMPONENTS, CONNECT_PORTS, CONNECT_TYPES, RESOLVE_INSTANCES),
+    *(ENVELOPE, REMOVE_GENERICS, FLATTEN, MONITOR),
 )
 PASSES: dict[str, Pass] = {each.name: each for each in _ALL_PASSES}
 """The passes by name."""

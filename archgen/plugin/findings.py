@@ -7,16 +7,5 @@ from archgen.diagnostics.safe_text import make_visible
 from archgen.diagnostics.source_span import NO_SPAN, Span, first_written_span
 from archgen.diagnostics.suggestions import did_you_mean
 
-__all__ = [
-    "NO_SPAN",
-    "Diagnostic",
-    "Label",
-    "Rule",
-    "RuleOption",
-    "Severity",
-    "Span",
-    "did_you_mean",
-    "first_written_span",
-    "join_words",
-    "make_visible",
-]
+__all__ = ["NO_SPAN", "Diagnostic", "Label", "Rule", "RuleOption", "Severity", "Span", "did_you_mean"]
+__all__ += ["first_written_span", "join_words", "make_visible"]

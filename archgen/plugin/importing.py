@@ -39,58 +39,13 @@ from archgen.syntax.yaml_parser import parse_yaml
 from archgen.syntax.yaml_tree import MappingNode, ScalarNode, SequenceNode, YamlNode, node_to_data, resolve_scalar
 from archgen.syntax.yaml_writer import FlowMapping, needs_quotes
 
-__all__ = [
-    "ARCHIVE_DAMAGE",
-    "CHARACTERS_IN_A_STEP",
-    "MAX_BYTES",
-    "MAX_ID_LENGTH",
-    "MAX_OFFICE_BYTES",
-    "NO_SPAN",
-    "STEPS_OF_A_KEPT_VALUE",
-    "ZIP_BEGINNING",
-    "FlowMapping",
-    "ForeignFileError",
-    "ForeignImport",
-    "ImportNote",
-    "ImportedRequirements",
-    "ImportedTables",
-    "MappingNode",
-    "ObjectAccount",
-    "ObservationOptions",
-    "ObservedEndpoint",
-    "ObservedNode",
-    "ObservedRobot",
-    "ReadRecordings",
-    "RecordedTopic",
-    "RecordingRefusedError",
-    "ScalarNode",
-    "SequenceNode",
-    "SourceTexts",
-    "Span",
-    "WorkBudget",
-    "XmlElement",
-    "XmlEvents",
-    "XmlProblem",
-    "YamlNode",
-    "explain_encoding",
-    "explain_syntax",
-    "find_closest",
-    "find_program_name",
-    "index_shipped_programs",
-    "is_id",
-    "link_slices",
-    "load_shipped_component_types",
-    "make_camel_name",
-    "make_id",
-    "make_unique_id",
-    "needs_quotes",
-    "node_to_data",
-    "open_named_file",
-    "parse_xml",
-    "parse_yaml",
-    "read_archive_members",
-    "read_bounded",
-    "resolve_scalar",
-    "spell_in_ascii",
-    "title_from_id",
-]
+__all__ = ["ARCHIVE_DAMAGE", "CHARACTERS_IN_A_STEP", "MAX_BYTES", "MAX_ID_LENGTH", "MAX_OFFICE_BYTES", "NO_SPAN"]
+__all__ += ["STEPS_OF_A_KEPT_VALUE", "ZIP_BEGINNING", "FlowMapping", "ForeignFileError", "ForeignImport", "ImportNote"]
+__all__ += ["ImportedRequirements", "ImportedTables", "MappingNode", "ObjectAccount", "ObservationOptions"]
+__all__ += ["ObservedEndpoint", "ObservedNode", "ObservedRobot", "ReadRecordings", "RecordedTopic"]
+__all__ += ["RecordingRefusedError", "ScalarNode", "SequenceNode", "SourceTexts", "Span", "WorkBudget", "XmlElement"]
+__all__ += ["XmlEvents", "XmlProblem", "YamlNode", "explain_encoding", "explain_syntax", "find_closest"]
+__all__ += ["find_program_name", "index_shipped_programs", "is_id", "link_slices", "load_shipped_component_types"]
+__all__ += ["make_camel_name", "make_id", "make_unique_id", "needs_quotes", "node_to_data", "open_named_file"]
+__all__ += ["parse_xml", "parse_yaml", "read_archive_members", "read_bounded", "resolve_scalar", "spell_in_ascii"]
+__all__ += ["title_from_id"]

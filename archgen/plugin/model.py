@@ -18,56 +18,10 @@ from archgen.model.requirement import Requirement
 from archgen.model.selector_evaluation import Selection, evaluate_selector
 from archgen.model.start_up import PHASES
 
-__all__ = [
-    "DIGITAL",
-    "MAX_DIGITS",
-    "MAX_NAME_LENGTH",
-    "MEDIUM_NAMES",
-    "NO_SCHEDULING",
-    "PART_KEYS",
-    "PHASES",
-    "Architecture",
-    "Chain",
-    "Component",
-    "ComponentType",
-    "ConceptualType",
-    "Connection",
-    "Container",
-    "DataField",
-    "ElementAnnotations",
-    "Endpoint",
-    "FlowKind",
-    "Group",
-    "Host",
-    "Input",
-    "Link",
-    "Node",
-    "Operation",
-    "Output",
-    "Parameter",
-    "Partner",
-    "ProcessScheduling",
-    "Qos",
-    "Quantity",
-    "Requirement",
-    "Resource",
-    "Selection",
-    "Timing",
-    "Topic",
-    "UseCase",
-    "UseKind",
-    "canonical_name",
-    "evaluate_selector",
-    "find_declarations",
-    "find_rings",
-    "flow_of",
-    "flow_of_port",
-    "is_parameter_name",
-    "is_physical",
-    "parse_quantity",
-    "qos_profile",
-    "read_generic_name",
-    "read_scheduling",
-    "uses_ros",
-    "word_of_medium",
-]
+__all__ = ["DIGITAL", "MAX_DIGITS", "MAX_NAME_LENGTH", "MEDIUM_NAMES", "NO_SCHEDULING", "PART_KEYS", "PHASES"]
+__all__ += ["Architecture", "Chain", "Component", "ComponentType", "ConceptualType", "Connection", "Container"]
+__all__ += ["DataField", "ElementAnnotations", "Endpoint", "FlowKind", "Group", "Host", "Input", "Link", "Node"]
+__all__ += ["Operation", "Output", "Parameter", "Partner", "ProcessScheduling", "Qos", "Quantity", "Requirement"]
+__all__ += ["Resource", "Selection", "Timing", "Topic", "UseCase", "UseKind", "canonical_name", "evaluate_selector"]
+__all__ += ["find_declarations", "find_rings", "flow_of", "flow_of_port", "is_parameter_name", "is_physical"]
+__all__ += ["parse_quantity", "qos_profile", "read_generic_name", "read_scheduling", "uses_ros", "word_of_medium"]

@@ -18,27 +18,8 @@ from archgen.model.message_types import full_message_name
 from archgen.model.ros_distro import PAST_DISTROS, is_ros_1
 from archgen.syntax.interface_definitions import INVALID_INTERFACE, parse_interface_definition
 
-__all__ = [
-    "INVALID_INTERFACE",
-    "KNOWN_DISTROS",
-    "PAST_DISTROS",
-    "Interface",
-    "InterfaceConstant",
-    "InterfaceField",
-    "ParameterSection",
-    "ParameterText",
-    "expand_name",
-    "find_name_fault",
-    "find_node_name_fault",
-    "flatten_parameters",
-    "full_message_name",
-    "is_common_callback",
-    "is_ros_1",
-    "load_interfaces",
-    "load_shipped_interfaces",
-    "matches_node_name",
-    "parse_interface_definition",
-    "read_parameter_text",
-    "shared_topic_names",
-    "spell_message_name",
-]
+__all__ = ["INVALID_INTERFACE", "KNOWN_DISTROS", "PAST_DISTROS", "Interface", "InterfaceConstant", "InterfaceField"]
+__all__ += ["ParameterSection", "ParameterText", "expand_name", "find_name_fault", "find_node_name_fault"]
+__all__ += ["flatten_parameters", "full_message_name", "is_common_callback", "is_ros_1", "load_interfaces"]
+__all__ += ["load_shipped_interfaces", "matches_node_name", "parse_interface_definition", "read_parameter_text"]
+__all__ += ["shared_topic_names", "spell_message_name"]

@@ -15,23 +15,7 @@ from archgen.views.start_phrases import (
     name_waits,
 )
 
-__all__ = [
-    "DEFAULT_SECONDS",
-    "KIND_WORDS",
-    "SCHEDULING_SCRIPT",
-    "SUBSTITUTION",
-    "RosLaunch",
-    "StartPlan",
-    "StartStep",
-    "describe_dropped",
-    "describe_lifecycle",
-    "describe_ready",
-    "describe_unknown",
-    "find_network_variables",
-    "find_wanted_steps",
-    "format_seconds",
-    "has_substitution",
-    "make_start_plan",
-    "name_waits",
-    "record_dds_profile",
-]
+__all__ = ["DEFAULT_SECONDS", "KIND_WORDS", "SCHEDULING_SCRIPT", "SUBSTITUTION", "RosLaunch", "StartPlan", "StartStep"]
+__all__ += ["describe_dropped", "describe_lifecycle", "describe_ready", "describe_unknown", "find_network_variables"]
+__all__ += ["find_wanted_steps", "format_seconds", "has_substitution", "make_start_plan", "name_waits"]
+__all__ += ["record_dds_profile"]

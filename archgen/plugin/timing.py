@@ -10,24 +10,7 @@ from archgen.timing.run_analysis import analyse_architecture
 from archgen.timing.system.activity_builder import activity_of_endpoint, endpoint_key, name_activities
 from archgen.timing.system.timing_system import Activity, Arc, TimingSystem
 
-__all__ = [
-    "MEASURED_KEYS",
-    "Activity",
-    "Analysis",
-    "Arc",
-    "ChainResult",
-    "ChainTerm",
-    "Observation",
-    "SampleCounter",
-    "SampleStatistics",
-    "TimingSystem",
-    "UnmappedSamples",
-    "activity_of_endpoint",
-    "analyse_architecture",
-    "bound_all_chains",
-    "endpoint_key",
-    "format_duration",
-    "format_rate",
-    "name_activities",
-    "read_observations",
-]
+__all__ = ["MEASURED_KEYS", "Activity", "Analysis", "Arc", "ChainResult", "ChainTerm", "Observation", "SampleCounter"]
+__all__ += ["SampleStatistics", "TimingSystem", "UnmappedSamples", "activity_of_endpoint", "analyse_architecture"]
+__all__ += ["bound_all_chains", "endpoint_key", "format_duration", "format_rate", "name_activities"]
+__all__ += ["read_observations"]

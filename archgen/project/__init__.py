@@ -21,21 +21,9 @@ if TYPE_CHECKING:
         load_at_revision,
     )
 
-__all__ = [
-    "PASS_FOLDER",
-    "PROJECT_FILE",
-    "RULES",
-    "LoadedProject",
-    "NotAtRevisionError",
-    "ParsedSlices",
-    "ProjectNotFoundError",
-    "TrackedProject",
-    "find_moved_project",
-    "find_tracked_project",
-    "load_at_commit",
-    "load_at_revision",
-    "load_project",
-]
+__all__ = ["PASS_FOLDER", "PROJECT_FILE", "RULES", "LoadedProject", "NotAtRevisionError", "ParsedSlices"]
+__all__ += ["ProjectNotFoundError", "TrackedProject", "find_moved_project", "find_tracked_project", "load_at_commit"]
+__all__ += ["load_at_revision", "load_project"]
 
 
 def __getattr__(name: str) -> object:

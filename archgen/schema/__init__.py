@@ -4,10 +4,4 @@ from archgen.schema.reading_rules import RULES
 from archgen.schema.schema_validation import list_sections, validate_document
 from archgen.schema.short_forms import fold_type_name, normalise_document
 
-__all__ = [
-    "RULES",
-    "fold_type_name",
-    "list_sections",
-    "normalise_document",
-    "validate_document",
-]
+__all__ = ["RULES", "fold_type_name", "list_sections", "normalise_document", "validate_document"]

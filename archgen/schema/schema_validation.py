@@ -177,13 +177,7 @@ _KEPT_LIST_KEYS = frozenset({"from", "implements", "through"})
 written, so that the same mistake is not reported a second time as a missing key.
 """
 _KEYS_OF_IDS = frozenset(SECTION_KINDS) | {
-    "components",
-    "inputs",
-    "outputs",
-    "publishes",
-    "subscribes",
-    "serves",
-    "calls",
+    *("components", "inputs", "outputs", "publishes", "subscribes", "serves", "calls"),
 }
 
 

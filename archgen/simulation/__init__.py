@@ -16,14 +16,5 @@ from archgen.simulation.simulation_result import (
     SimulationResult,
 )
 
-__all__ = [
-    "ChainFigures",
-    "DurationDistribution",
-    "ObservedActivity",
-    "ObservedChain",
-    "ObservedHost",
-    "ObservedLink",
-    "SimulationResult",
-    "find_late_runs",
-    "simulate_system",
-]
+__all__ = ["ChainFigures", "DurationDistribution", "ObservedActivity", "ObservedChain", "ObservedHost", "ObservedLink"]
+__all__ += ["SimulationResult", "find_late_runs", "simulate_system"]

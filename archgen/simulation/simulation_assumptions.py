@@ -16,14 +16,9 @@ from archgen.timing.system.fair_hosts import PREEMPTIVE_ORDERS
 from archgen.timing.system.timing_system import Activity, TimingSystem, is_selective_arc
 
 NOT_SIMULATED = (
-    "caches, migration, context switches and interrupts",
-    "the middleware's own threads",
-    "lost packets",
-    "drifting clocks",
-    "start-up",
-    "callers that block until the answer is there",
-    "deadlines and liveliness of quality of service",
-    "whatever is outside of the architecture",
+    *("caches, migration, context switches and interrupts", "the middleware's own threads", "lost packets"),
+    *("drifting clocks", "start-up", "callers that block until the answer is there"),
+    *("deadlines and liveliness of quality of service", "whatever is outside of the architecture"),
 )
 """The user's copy of this list is in docs/simulation.md."""
 

@@ -34,20 +34,8 @@ KIND_ORDER = {name: position for position, name in enumerate(ELEMENT_KINDS)}
 """The position of each kind in that order."""
 MATCHING_ORDER = (
     *(
-        "partner",
-        "component_type",
-        "group",
-        "composed",
-        "component",
-        "output",
-        "input",
-        "type",
-        "message",
-        "node",
-        "container",
-        "host",
-        "resource",
-        "link",
+        *("partner", "component_type", "group", "composed", "component", "output", "input", "type", "message", "node"),
+        *("container", "host", "resource", "link"),
     ),
     *("frame", "chain", "requirement", "use_case", "view", "policy", "variant"),
     *PLAIN_KINDS,
@@ -55,18 +43,8 @@ MATCHING_ORDER = (
 """The kinds that are recognised under other ids, each after those that its features refer to: groups before components,
 hosts after nodes, links after hosts."""
 
-__all__ = [
-    "ELEMENT_KINDS",
-    "KIND_ORDER",
-    "MATCHING_ORDER",
-    "PLAIN_KINDS",
-    "Effect",
-    "KeySpec",
-    "KindSpec",
-    "Worsening",
-    "find_effect",
-    "find_key",
-]
+__all__ = ["ELEMENT_KINDS", "KIND_ORDER", "MATCHING_ORDER", "PLAIN_KINDS", "Effect", "KeySpec", "KindSpec"]
+__all__ += ["Worsening", "find_effect", "find_key"]
 
 
 def find_key(kind: str, key: str) -> KeySpec:

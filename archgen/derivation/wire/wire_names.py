@@ -269,16 +269,8 @@ class NodeNames:
     """Knows what the names of one node's program are on the wire. Its name and namespace are those after all rules."""
 
     __slots__ = (
-        "_any_rules",
-        "_is_observed",
-        "_moves_actions",
-        "_name",
-        "_namespace",
-        "_ros_1",
-        "_rules_by_name",
-        "_services",
-        "_topics",
-        "rules",
+        *("_any_rules", "_is_observed", "_moves_actions", "_name", "_namespace", "_ros_1", "_rules_by_name"),
+        *("_services", "_topics", "rules"),
     )
 
     def __init__(self, node: Node, distro: str | None) -> None:

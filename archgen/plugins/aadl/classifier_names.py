@@ -11,15 +11,8 @@ from archgen.plugins.aadl.aadl_tree import AadlPackage, AadlValue, Classifier, P
 LIBRARY_PACKAGES = frozenset({"cnc", "ros"})
 STANDARD_SETS = frozenset(
     [
-        "aadl_project",
-        "aadl_properties",
-        "aadl_contribution",
-        "timing_properties",
-        "thread_properties",
-        "communication_properties",
-        "memory_properties",
-        "modeling_properties",
-        "deployment_properties",
+        *("aadl_project", "aadl_properties", "aadl_contribution", "timing_properties", "thread_properties"),
+        *("communication_properties", "memory_properties", "modeling_properties", "deployment_properties"),
         "programming_properties",
     ]
 )

@@ -7,30 +7,12 @@ from archgen.plugins.aadl.property_parsing import parse_property_list
 from archgen.plugins.aadl.token_cursor import AadlSyntaxError, TokenCursor
 
 CATEGORIES = (
-    "abstract",
-    "bus",
-    "data",
-    "device",
-    "memory",
-    "process",
-    "processor",
-    "subprogram group",
-    "subprogram",
-    "system",
-    "thread group",
-    "thread",
-    "virtual bus",
-    "virtual processor",
+    *("abstract", "bus", "data", "device", "memory", "process", "processor", "subprogram group", "subprogram"),
+    *("system", "thread group", "thread", "virtual bus", "virtual processor"),
 )
 """Categories of components; those of two words come before those that begin as they do."""
 PORTS = ("event data port", "event port", "data port")
-ACCESSES = (
-    "virtual bus access",
-    "bus access",
-    "data access",
-    "subprogram group access",
-    "subprogram access",
-)
+ACCESSES = (*("virtual bus access", "bus access", "data access", "subprogram group access", "subprogram access"),)
 _PLAIN_KINDS = (*PORTS, "parameter", "feature group", "port group", "feature")
 _WORDS = {words: tuple(words.split()) for words in (*CATEGORIES, *ACCESSES, *_PLAIN_KINDS)}
 

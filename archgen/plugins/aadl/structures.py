@@ -17,13 +17,7 @@ HARDWARE_CATEGORIES = frozenset({"processor", "virtual processor", "memory", "bu
 _MAX_LEVELS = 40
 WIRE_KINDS = frozenset(
     [
-        "port",
-        "data port",
-        "event port",
-        "event data port",
-        "feature group",
-        "port group",
-        "feature",
+        *("port", "data port", "event port", "event data port", "feature group", "port group", "feature"),
         "subprogram access",
     ]
 )

@@ -47,15 +47,7 @@ HEADING_SORTS = frozenset(
 """What an object of these types says is no requirement."""
 PART_RELATIONS = frozenset(
     {
-        "partof",
-        "ispartof",
-        "parent",
-        "hasparent",
-        "childof",
-        "refines",
-        "derives",
-        "derivedfrom",
-        "decomposes",
+        *("partof", "ispartof", "parent", "hasparent", "childof", "refines", "derives", "derivedfrom", "decomposes"),
         "archgenpartof",
     }
 )

@@ -14,18 +14,7 @@ _ROS_2_TIMES = {ros_1_name: message for message, ros_1_name in _ROS_1_TIMES.item
 _BOUND = re.compile(r"<=(\d+)")
 _FIELD_TYPES = frozenset(
     (
-        "bool",
-        "byte",
-        "char",
-        "float32",
-        "float64",
-        "int8",
-        "uint8",
-        "int16",
-        "uint16",
-        "int32",
-        "uint32",
-        "int64",
+        *("bool", "byte", "char", "float32", "float64", "int8", "uint8", "int16", "uint16", "int32", "uint32", "int64"),
         "uint64",
     )
 )

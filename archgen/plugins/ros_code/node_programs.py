@@ -299,10 +299,7 @@ _PACKAGE = re.compile(r"[A-Za-z][A-Za-z0-9_]*\Z", re.ASCII)
 _EXECUTABLE = re.compile(r"[A-Za-z0-9_][A-Za-z0-9_.-]*\Z", re.ASCII)
 _MAX_NAME = 100
 _MESSAGE_LIBRARIES = (
-    "builtin_interfaces",
-    "rosidl_runtime_c",
-    "rosidl_typesupport_cpp",
-    "rosidl_typesupport_introspection_cpp",
+    *("builtin_interfaces", "rosidl_runtime_c", "rosidl_typesupport_cpp", "rosidl_typesupport_introspection_cpp"),
 )
 """With which stand-ins in C++ learn what is in a message."""
 _LANGUAGES = {"python": "Python", "cpp": "C++"}

@@ -8,31 +8,11 @@ from archgen.plugin.generating import PORT_SECTIONS, make_camel_name
 
 _IMPORTED_OF_ROS_2 = frozenset(
     [
-        "ActionClient",
-        "ActionServer",
-        "Clock",
-        "ClockType",
-        "Duration",
-        "DurabilityPolicy",
-        "ExternalShutdownException",
-        "FloatingPointRange",
-        "Future",
-        "GoalResponse",
-        "HistoryPolicy",
-        "IntegerRange",
-        "LifecycleNode",
-        "LivelinessPolicy",
-        "MultiThreadedExecutor",
-        "MutuallyExclusiveCallbackGroup",
-        "Node",
-        "NotActive",
-        "Parameter",
-        "ParameterDescriptor",
-        "QoSProfile",
-        "ReentrantCallbackGroup",
-        "ReliabilityPolicy",
-        "SetParametersResult",
-        "TransitionCallbackReturn",
+        *("ActionClient", "ActionServer", "Clock", "ClockType", "Duration", "DurabilityPolicy"),
+        *("ExternalShutdownException", "FloatingPointRange", "Future", "GoalResponse", "HistoryPolicy", "IntegerRange"),
+        *("LifecycleNode", "LivelinessPolicy", "MultiThreadedExecutor", "MutuallyExclusiveCallbackGroup", "Node"),
+        *("NotActive", "Parameter", "ParameterDescriptor", "QoSProfile", "ReentrantCallbackGroup", "ReliabilityPolicy"),
+        *("SetParametersResult", "TransitionCallbackReturn"),
     ]
 )
 """What the modules of nodes import of rclpy: a message of this name is imported under another one."""

@@ -35,16 +35,7 @@ from archgen.views.shapes import (
 CHANGES_ANCHOR = "page:changes"
 _PAGE_KINDS = frozenset(
     {
-        "component",
-        "group",
-        "node",
-        "partner",
-        "requirement",
-        "use_case",
-        "host",
-        "container",
-        "type",
-        "message",
+        *("component", "group", "node", "partner", "requirement", "use_case", "host", "container", "type", "message"),
         "chain",
     }
 )

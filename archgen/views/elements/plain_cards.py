@@ -26,30 +26,9 @@ from archgen.views.requirement_servers import describe_chain_state
 from archgen.views.sequences.sequence_charts import describe_total, list_step_lines
 
 _CARD_KEYS = (
-    "message",
-    "size",
-    "comment",
-    "description",
-    "use_cases",
-    "host",
-    "cores",
-    "address",
-    "threads",
-    "scheduling",
-    "connects",
-    "devices",
-    "owner",
-    "protocol",
-    "bandwidth",
-    "frame",
-    "parent",
-    "by",
-    "rate",
-    "deadline",
-    "show",
-    "of",
-    "without",
-    "drop",
+    *("message", "size", "comment", "description", "use_cases", "host", "cores", "address", "threads", "scheduling"),
+    *("connects", "devices", "owner", "protocol", "bandwidth", "frame", "parent", "by", "rate", "deadline", "show"),
+    *("of", "without", "drop"),
 )
 """One list of field names for all kinds that say which; those that an element lacks are empty and dropped."""
 

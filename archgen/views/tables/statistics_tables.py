@@ -64,17 +64,8 @@ _FIGURE_LABELS = {
 """Titles of figures; the keys are fields of `Size`, read by name."""
 _RARE_FIGURES = frozenset(
     {
-        "composed",
-        "component_types",
-        "made_connections",
-        "frames",
-        "variants",
-        "steps",
-        "programs",
-        "promises",
-        "deprecated",
-        "verified",
-        "property_values",
+        *("composed", "component_types", "made_connections", "frames", "variants", "steps", "programs", "promises"),
+        *("deprecated", "verified", "property_values"),
     }
 )
 """Figures that are left out where there is nothing to count: most projects compose nothing and name no frames."""

@@ -26,12 +26,7 @@ def is_ros_1_launch(root: LaunchEntity, name: str) -> bool:
         attributes = entity.attributes
         texts = [value for value in attributes.values() if isinstance(value, str)]
         if entity.tag in {
-            "let",
-            "node_container",
-            "set_parameter",
-            "push-ros-namespace",
-            "push_ros_namespace",
-            "executable",
+            *("let", "node_container", "set_parameter", "push-ros-namespace", "push_ros_namespace", "executable"),
         }:
             return False
         holds_parameters = entity.tag == "group" and entity.find_all("param")

@@ -144,14 +144,8 @@ _YAML_STEPS = {
     "pilz_cartesian_limits": ("_planning", "pilz_cartesian_limits.yaml"),
 }
 _STEPS = (
-    "robot_description",
-    "robot_description_semantic",
-    "robot_description_kinematics",
-    "planning_pipelines",
-    "trajectory_execution",
-    "planning_scene_monitor",
-    "sensors_3d",
-    "joint_limits",
+    *("robot_description", "robot_description_semantic", "robot_description_kinematics", "planning_pipelines"),
+    *("trajectory_execution", "planning_scene_monitor", "sensors_3d", "joint_limits"),
 )
 """What is put together with the defaults unless the launch file does it, in MoveIt's order."""
 

@@ -187,14 +187,7 @@ class NodeQuestions:
 def read_value(value: Any) -> Any:
     """Return the value of a parameter."""
     fields = (
-        "bool",
-        "integer",
-        "double",
-        "string",
-        "byte_array",
-        "bool_array",
-        "integer_array",
-        "double_array",
+        *("bool", "integer", "double", "string", "byte_array", "bool_array", "integer_array", "double_array"),
         "string_array",
     )
     if not 1 <= value.type <= len(fields):

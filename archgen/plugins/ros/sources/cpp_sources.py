@@ -27,15 +27,8 @@ _ESCAPES = {"n": "\n", "t": "\t", "0": "\0"}
 _TYPES_LEFT_OUT = re.compile(r"\b(?:const|constexpr|static|inline|struct|class|typename|volatile|mutable)\b|[&*\s]")
 _BLOCKS = frozenset(
     {
-        "declaration_list",
-        "linkage_specification",
-        "preproc_ifdef",
-        "preproc_if",
-        "preproc_else",
-        "preproc_elif",
-        "field_declaration_list",
-        "translation_unit",
-        "ERROR",
+        *("declaration_list", "linkage_specification", "preproc_ifdef", "preproc_if", "preproc_else", "preproc_elif"),
+        *("field_declaration_list", "translation_unit", "ERROR"),
     }
 )
 _CLASSES = frozenset({"class_specifier", "struct_specifier"})

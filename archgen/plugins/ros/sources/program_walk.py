@@ -50,16 +50,7 @@ _PASSED_THROUGH = frozenset(
     | {"static_pointer_cast", "dynamic_pointer_cast", "as_string", "as_int", "as_double", "as_bool", "as_string_array"}
     | {f"{kind}_value" for kind in ("string", "double", "integer", "bool", "string_array", "double_array")}
     | {
-        "ParameterValue",
-        "String",
-        "str",
-        "string",
-        "list",
-        "tuple",
-        "int",
-        "float",
-        "to_string",
-        "numpy_msg",
+        *("ParameterValue", "String", "str", "string", "list", "tuple", "int", "float", "to_string", "numpy_msg"),
         "TransportHints",
     }
 )

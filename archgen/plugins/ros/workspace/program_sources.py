@@ -24,14 +24,7 @@ _TESTS = frozenset({"test", "tests"})
 _ENTRY_POINT = re.compile(r"\s*([\w.\-]+)\s*=\s*([\w.]+)\s*:\s*([\w.]+)\s*")
 _LIBRARY_WORDS = frozenset(
     {
-        "STATIC",
-        "SHARED",
-        "MODULE",
-        "OBJECT",
-        "INTERFACE",
-        "EXCLUDE_FROM_ALL",
-        "PUBLIC",
-        "PRIVATE",
+        *("STATIC", "SHARED", "MODULE", "OBJECT", "INTERFACE", "EXCLUDE_FROM_ALL", "PUBLIC", "PRIVATE"),
         "NO_TARGET_LINK_LIBRARIES",
     }
 )
