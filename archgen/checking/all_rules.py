@@ -5,25 +5,23 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 from functools import cache
 
-from archgen import analyses, compose, conformance, findings, link, project, schema
+from archgen import analyses, conformance, findings
+from archgen.diagnostics import stage_rules
 from archgen.diagnostics.diagnostic import Diagnostic, Rule, Severity
 from archgen.findings import rule_table
 from archgen.findings.rule_table import FAILED_RULE
 from archgen.installed_plugins import RULES, list_entries
-from archgen.syntax import interface_definitions as interface_files
 
 SHIPPED_RULES: tuple[Rule, ...] = (
-    *interface_files.RULES,
-    *schema.RULES,
-    *project.RULES,
-    *compose.RULES,
-    *link.RULES,
+    *stage_rules.READING_RULES,
+    *stage_rules.MERGING_RULES,
+    *stage_rules.LINKING_RULES,
     *analyses.RULES,
     *conformance.RULES,
     *findings.RULES,
 )
 """The rules that ship, in the order in which the stages run."""
-READING_RULES = frozenset(rule.name for rule in (*interface_files.RULES, *schema.RULES, *project.RULES))
+READING_RULES = frozenset(rule.name for rule in stage_rules.READING_RULES)
 
 
 @cache

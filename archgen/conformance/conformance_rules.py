@@ -2,41 +2,25 @@
 
 from __future__ import annotations
 
-from archgen.diagnostics.diagnostic import Rule, Severity
+from archgen.diagnostics.diagnostic import Rule, Severity, read_rules
 from archgen.diagnostics.rule_options import RuleOption
 
 RULES = (
-    Rule(
-        "other-type", Severity.ERROR, "A topic, service or action of the robot has another type than the design says."
-    ),
-    Rule(
-        "other-qos",
-        Severity.ERROR,
-        "The quality of service of the robot is not what the design writes, or no longer fits the other end.",
-    ),
-    Rule(
-        "other-name",
-        Severity.ERROR,
-        "A node of the robot, or what it uses, is there under another name than the design says.",
-    ),
-    Rule(
-        "not-running",
-        Severity.ERROR,
-        "The design has a node, or something that a node uses, which the robot has not.",
-    ),
-    Rule("not-in-model", Severity.WARNING, "The robot has a node, or a node uses something, that the design has not."),
-    Rule("runs-twice", Severity.ERROR, "Two nodes of the robot have the same full name."),
-    Rule(
-        "other-state",
-        Severity.ERROR,
-        "A lifecycle node of the robot is in another state than the one in which the design has it once the robot is up.",
-    ),
-    Rule("other-host", Severity.WARNING, "A node of the robot runs on another computer than the design says."),
-    Rule(
-        "not-latched",
-        Severity.ERROR,
-        "A publisher keeps nothing for those who come late, although the design says so (`durability: transient_local`).",
-    ),
+    *read_rules("""
+error other-type: A topic, service or action of the robot has another type than the design says.
+error other-qos: The quality of service of the robot is not what the design writes, or no longer fits the other end.
+error other-name: A node of the robot, or what it uses, is there under another name than the design says.
+error not-running: The design has a node, or something that a node uses, which the robot has not.
+warning not-in-model: The robot has a node, or a node uses something, that the design has not.
+error runs-twice: Two nodes of the robot have the same full name.
+error other-state: A lifecycle node of the robot is in another state than the one in which the design has it once the robot is up.
+warning other-host: A node of the robot runs on another computer than the design says.
+error not-latched: A publisher keeps nothing for those who come late, although the design says so (`durability: transient_local`).
+error other-frame: Recorded messages are given in another coordinate frame than the design says.
+warning other-parameter: A parameter of the robot has another value than the design gives it.
+note stale-import: What a slice was imported from changed since then.
+warning stale-acceptance: An accepted difference between robot and design is gone, is accepted for longer than was said, or names no rule.
+"""),
     Rule(
         "rate-below-promise",
         Severity.ERROR,
@@ -60,16 +44,6 @@ RULES = (
         Severity.WARNING,
         "A recorded message is larger than the size of its type in the model.",
         options=(RuleOption("margin", 10, 0, 900, "The share by which a message may be larger."),),
-    ),
-    Rule(
-        "other-frame", Severity.ERROR, "Recorded messages are given in another coordinate frame than the design says."
-    ),
-    Rule("other-parameter", Severity.WARNING, "A parameter of the robot has another value than the design gives it."),
-    Rule("stale-import", Severity.NOTE, "What a slice was imported from changed since then."),
-    Rule(
-        "stale-acceptance",
-        Severity.WARNING,
-        "An accepted difference between robot and design is gone, is accepted for longer than was said, or names no rule.",
     ),
 )
 RULE_NAMES = frozenset(rule.name for rule in RULES)

@@ -123,6 +123,18 @@ class Rule:
         return cls(function.__name__.replace("_", "-"), severity, doc, options=options)
 
 
+def read_rules(table: str) -> tuple[Rule, ...]:
+    """Read rules from lines `SEVERITY NAME: SENTENCE`; `fixed` in the place of the severity is an error that is a fixed rule."""
+    rules = []
+    for line in table.split("\n"):
+        if line and not line.startswith("#"):
+            head, _, doc = line.partition(": ")
+            severity, _, name = head.partition(" ")
+            is_fixed = severity == "fixed"
+            rules.append(Rule(name, Severity.ERROR if is_fixed else Severity(severity), doc, fixed=is_fixed))
+    return tuple(rules)
+
+
 _NEW_RULE_NAMES = {"unactivated-node": "silent-node"}
 """What rules are called by now that had another name: settings, comments and baselines may still have that."""
 

@@ -12,7 +12,7 @@ from collections.abc import Callable, Iterator, Mapping
 from decimal import Decimal
 
 from archgen.diagnostics.common_wording import join_words
-from archgen.diagnostics.diagnostic import Diagnostic, Label, Rule, Severity
+from archgen.diagnostics.diagnostic import Diagnostic, Label
 from archgen.diagnostics.source_span import Span
 from archgen.diagnostics.suggestions import did_you_mean
 from archgen.frozen import NamedTuple, dataclass, replace
@@ -26,11 +26,6 @@ from archgen.syntax.project_files import ProjectFiles, read_text_file
 from archgen.syntax.yaml_parser import parse_yaml
 from archgen.syntax.yaml_tree import MappingNode, ScalarNode
 
-WRONG_HINT = Rule(
-    "wrong-hint",
-    Severity.ERROR,
-    "A hint is not what the backend that it is for reads.",
-)
 _MAX_MANIFEST_LETTERS = 65_536
 _ANY_KIND = "any"
 """The key of the schema for kinds of elements that have none of their own."""
@@ -143,7 +138,7 @@ def _find_place(places: Mapping[tuple[str | int, ...], Span], path: tuple[str | 
 def _report_fault(backend: _BackendHints, each: _HintedPart, fault: HintFault, place: Span) -> Diagnostic:
     path = ".".join(map(str, (backend.id, *fault.path)))
     return Diagnostic(
-        WRONG_HINT.name,
+        "wrong-hint",
         f"`hints.{path}` of the {each.kind.replace('_', ' ')} `{each.id}` {fault.words}",
         place,
         labels=(Label(backend.at, "what the backend reads"),) if backend.at else (),

@@ -11,7 +11,7 @@ from collections.abc import Iterator, Mapping, Sequence
 
 from archgen.derivation.wire.wire_names import NodeNames
 from archgen.diagnostics.common_wording import join_words
-from archgen.diagnostics.diagnostic import Diagnostic, Rule, Severity
+from archgen.diagnostics.diagnostic import Diagnostic
 from archgen.diagnostics.source_span import first_written_span
 from archgen.frozen import NamedTuple
 from archgen.model.architecture import Architecture
@@ -25,16 +25,6 @@ from archgen.project.library_reading import (
 )
 from archgen.syntax.yaml_tree import node_to_data
 
-UNLIKE_PROGRAM = Rule(
-    "unlike-program",
-    Severity.WARNING,
-    "A program has a name of its own for what it reads or sends, and the design another one, to which nothing remaps it.",
-)
-SHADOWED_PACKAGE = Rule(
-    "shadowed-package",
-    Severity.WARNING,
-    "A node is in a package that others publish, and nothing says that its program exists: code would be generated in its place.",
-)
 _VERBS = {"publishes": "publishes", "subscribes": "subscribes to", "serves": "serves", "calls": "calls"}
 
 
@@ -83,7 +73,7 @@ def find_shadowed_packages(architecture: Architecture) -> Iterator[Diagnostic]:
                 f"write `status: existing` at the node, and which program of `{node.package}` it runs (`executable`); "
                 "`status: planned` if you do write a package of this name"
             )
-            yield Diagnostic(SHADOWED_PACKAGE.name, message, node.at, help=help_line, element=node.id)
+            yield Diagnostic("shadowed-package", message, node.at, help=help_line, element=node.id)
 
 
 def _find_other_names(
@@ -136,7 +126,7 @@ def _report_other_name(node: Node, endpoint: Endpoint, own_names: Sequence[str])
         f"write {entry} at the node, so that it is remapped when it starts; or let the design have the program's name"
     )
     span = first_written_span(endpoint.at, node.at)
-    return Diagnostic(UNLIKE_PROGRAM.name, message, span, help=help_line, element=endpoint.port or node.id)
+    return Diagnostic("unlike-program", message, span, help=help_line, element=endpoint.port or node.id)
 
 
 def _list_ends(component_type: Mapping[str, object], node: Node) -> Iterator[ProgramEnd]:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import posixpath
 from collections.abc import Iterable, Iterator
 
-from archgen.diagnostics.diagnostic import Diagnostic, Rule, Severity
+from archgen.diagnostics.diagnostic import Diagnostic
 from archgen.diagnostics.suggestions import did_you_mean
 from archgen.frozen import NamedTuple
 from archgen.link import mapping_values
@@ -14,11 +14,6 @@ from archgen.model.known_parts import KnownParts
 from archgen.syntax.project_files import ProjectFiles
 from archgen.syntax.yaml_tree import MappingNode, ScalarNode
 
-MISSING_FILE = Rule(
-    "missing-file",
-    Severity.WARNING,
-    "An element names a document or a picture that is not in the project.",
-)
 _PICTURE_ENDINGS = (".png", ".jpg", ".jpeg", ".svg", ".gif", ".webp")
 
 

@@ -10,7 +10,7 @@ import re
 from collections import defaultdict
 from collections.abc import Iterator, Mapping
 
-from archgen.diagnostics.diagnostic import Diagnostic, Rule, Severity
+from archgen.diagnostics.diagnostic import Diagnostic, Severity
 from archgen.diagnostics.source_span import Span
 from archgen.frozen import dataclass, field, replace
 from archgen.link import mapping_values
@@ -168,11 +168,6 @@ class _ParameterReader:
         self.diagnostics.append(Diagnostic("too-large", message, scalar.span, Severity.WARNING, help=help_line))
 
 
-MISSING_PARAMETER_FILE = Rule(
-    "missing-parameter-file",
-    Severity.OFF,
-    "A parameter file that a node names is not there.",
-)
 _ELSEWHERE = re.compile(r"[/~$\\]|\.\.(/|\Z)|\w+:")
 """How the path of a file begins that does not lie in the project, or whose place only the robot knows."""
 _MAX_DEPTH = 4

@@ -17,7 +17,7 @@ from collections.abc import Iterator, Mapping
 from functools import lru_cache
 from urllib.parse import quote, unquote
 
-from archgen.diagnostics.diagnostic import Diagnostic, Rule, Severity
+from archgen.diagnostics.diagnostic import Diagnostic
 from archgen.diagnostics.source_span import SourceTexts, Span
 from archgen.diagnostics.suggestions import did_you_mean
 from archgen.frozen import NamedTuple, dataclass, field
@@ -27,13 +27,6 @@ from archgen.model.document_chapters import GENERATED_CHAPTERS, Chapter
 from archgen.model.report_settings import HistoryEntry, ReportSettings
 from archgen.syntax.project_files import ProjectFiles, read_binary_file, read_text_file
 from archgen.syntax.yaml_tree import MappingNode, ScalarNode, SequenceNode, YamlNode, list_entries
-
-MISSING_CHAPTER = Rule(
-    "missing-chapter",
-    Severity.ERROR,
-    "The report asks for a chapter that is neither one that archgen writes nor a file of the project.",
-    fixed=True,
-)
 
 
 @dataclass(frozen=True, slots=True)
@@ -242,13 +235,6 @@ def _list_versions(report: MappingNode) -> Iterator[HistoryEntry]:
             yield HistoryEntry(*values)
 
 
-MISSING_PICTURE = Rule(
-    "missing-picture",
-    Severity.WARNING,
-    "A chapter of the report shows a picture that is not there.",
-    # A chapter has no comments of YAML that could silence a line.
-    setting="rules: {missing-picture: note}  # off, note, warning or error",
-)
 _PLAIN_PICTURE = re.compile(r"""!\[[^\[\]]*\]\(([^\s()<>\\]+)(?:[ \t]+"[^"\n]*")?\)""")
 
 

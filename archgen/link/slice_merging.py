@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from archgen.diagnostics.diagnostic import Diagnostic, Rule, Severity, diagnose_repetition
+from archgen.diagnostics.diagnostic import Diagnostic, diagnose_repetition
 from archgen.diagnostics.source_span import NO_SPAN
 from archgen.diagnostics.suggestions import did_you_mean
 from archgen.grouping import group_pairs
@@ -247,22 +247,6 @@ def _remove_components(path: KeyPath, holder: MappingEntry, removed_paths: froze
         return None if inner_path in removed_paths else _remove_components(inner_path, component, removed_paths)
 
     return holder.change_keys({"components": lambda parts: parts.change_each(keep)})
-
-
-RULES: tuple[Rule, ...] = (
-    Rule(
-        "conflicting-values",
-        Severity.ERROR,
-        "One value is written in two places of the project.",
-        fixed=True,
-    ),
-    Rule(
-        "undeclared-element",
-        Severity.ERROR,
-        "A file adds to a component or a group that no file declares.",
-        fixed=True,
-    ),
-)
 
 
 _KeyPath = tuple[str, ...]

@@ -5,17 +5,12 @@ from __future__ import annotations
 import posixpath
 from collections.abc import Iterator
 
-from archgen.diagnostics.diagnostic import Diagnostic, Rule, Severity
+from archgen.diagnostics.diagnostic import Diagnostic
 from archgen.diagnostics.suggestions import did_you_mean
 from archgen.model.architecture import Architecture
 from archgen.model.requirement import Requirement, Verification
 from archgen.syntax.project_files import ProjectFiles
 
-MISSING_VERIFICATION = Rule(
-    "missing-verification",
-    Severity.WARNING,
-    "What is to verify a requirement is not there.",
-)
 _MAX_GUESSES = 50
 """So many get a guess; it is looked for among all use cases and chains."""
 

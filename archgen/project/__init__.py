@@ -9,7 +9,6 @@ from archgen.project.project_loading import LoadedProject, load_project
 from archgen.project.project_search import PROJECT_FILE, ProjectNotFoundError
 from archgen.project.slice_parsing import ParsedSlices
 from archgen.project.source_reading import PASS_FOLDER
-from archgen.project.source_rules import RULES
 
 if TYPE_CHECKING:
     from archgen.project.project_tracking import (
@@ -21,7 +20,7 @@ if TYPE_CHECKING:
         load_at_revision,
     )
 
-__all__ = ["PASS_FOLDER", "PROJECT_FILE", "RULES", "LoadedProject", "NotAtRevisionError", "ParsedSlices"]
+__all__ = ["PASS_FOLDER", "PROJECT_FILE", "LoadedProject", "NotAtRevisionError", "ParsedSlices"]
 __all__ += ["ProjectNotFoundError", "TrackedProject", "find_moved_project", "find_tracked_project", "load_at_commit"]
 __all__ += ["load_at_revision", "load_project"]
 

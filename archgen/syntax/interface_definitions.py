@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import re
 
-from archgen.diagnostics.diagnostic import Diagnostic, Label, Rule, Severity
+from archgen.diagnostics.diagnostic import Diagnostic, Label
 from archgen.diagnostics.source_span import Span
 from archgen.diagnostics.suggestions import did_you_mean
 from archgen.frozen import NamedTuple, dataclass, field
@@ -23,14 +23,6 @@ from archgen.syntax.interface_literals import (
 )
 
 INVALID_INTERFACE = "invalid-interface"
-RULES = (
-    Rule(
-        INVALID_INTERFACE,
-        Severity.ERROR,
-        "A definition of a message, a service or an action that ROS would refuse.",
-        fixed=True,
-    ),
-)
 
 _PART_COUNTS = {"msg": 1, "srv": 2, "action": 3}
 _KIND_PHRASES = {"msg": "a message", "srv": "a service", "action": "an action"}

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from archgen.link.report_chapters import MISSING_PICTURE
 from archgen.pipeline import check_project
 
 _PACKED = """\
@@ -21,6 +20,6 @@ report:
 def test_a_packed_project_holds_its_pictures_itself(tmp_path: Path) -> None:
     (tmp_path / "robot.yaml").write_text(_PACKED)
     findings = check_project(tmp_path / "robot.yaml").findings
-    assert [(str(d.span), d.message) for d in findings if d.rule == MISSING_PICTURE.name] == [
+    assert [(str(d.span), d.message) for d in findings if d.rule == "missing-picture"] == [
         ("robot.yaml:5:5", "the picture `gone.png` of the chapter `docs/a.md` is not there")
     ]

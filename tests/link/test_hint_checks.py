@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from archgen.link.hint_checks import WRONG_HINT, list_hint_faults
+from archgen.link.hint_checks import list_hint_faults
 from archgen.pipeline import check_project
 from archgen.syntax.yaml_parser import parse_yaml
 
@@ -40,7 +40,7 @@ def check(folder: Path, hints: str, manifest: str | None = MANIFEST) -> list[str
     return [
         f"{each.span.column}: {each.message.partition(' of the component `g.a` ')[::2]} {each.help or ''}".rstrip()
         for each in check_project(folder).findings
-        if each.rule == WRONG_HINT.name
+        if each.rule == "wrong-hint"
     ]
 
 
@@ -94,9 +94,7 @@ groups: {g: {components: {a: {is: motor, hints: {orca: {tag: Car}}}, b: {is: mot
     (tmp_path / "archgen.yaml").write_text(text, encoding="utf-8")
     manifest = MANIFEST.replace("  output: {}", "  component_type: {}")
     (tmp_path / "backends" / "orca" / "backend.yaml").write_text(manifest, encoding="utf-8")
-    found = [
-        (each.span.line, each.element) for each in check_project(tmp_path).findings if each.rule == WRONG_HINT.name
-    ]
+    found = [(each.span.line, each.element) for each in check_project(tmp_path).findings if each.rule == "wrong-hint"]
     assert found == [(2, "g.a")]
 
 
@@ -154,7 +152,7 @@ def test_hints_at_parameters_are_judged_once_where_they_are_written(
     (tmp_path / "archgen.yaml").write_text(PARAMETERS, encoding="utf-8")
     (tmp_path / "backends" / "orca").mkdir(parents=True)
     (tmp_path / "backends" / "orca" / "backend.yaml").write_text(manifest, encoding="utf-8")
-    findings = [each for each in check_project(tmp_path).findings if each.rule == WRONG_HINT.name]
+    findings = [each for each in check_project(tmp_path).findings if each.rule == "wrong-hint"]
     assert [f"{each.span.line}:{each.span.column}: {each.message}" for each in findings] == found
 
 

@@ -11,10 +11,10 @@ from rosbags.typesys import Stores, get_typestore
 
 from archgen.diagnostics.diagnostic import Diagnostic
 from archgen.diagnostics.source_span import Span
+from archgen.diagnostics.stage_rules import READING_RULES
 from archgen.findings.rule_pages import read_rule_page
 from archgen.link.interface_sources import interface_name_of, load_interfaces
 from archgen.model.known_interfaces import KNOWN_DISTROS, Interface, InterfaceField, InterfaceStatus
-from archgen.syntax.interface_definitions import RULES
 from tests.outside_tools import run_judge
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -208,7 +208,7 @@ def test_own_definitions_add_to_a_package_that_is_held_in_part() -> None:
 
 
 def test_the_rule_page_tells_the_truth() -> None:
-    (rule,) = RULES
+    rule = READING_RULES[0]
     page = read_rule_page(rule)
     for text, count in ((page.bad, 1), (page.good, 0)):
         example = yaml.safe_load(text)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from archgen.link.named_files import MISSING_FILE, is_file_path
+from archgen.link.named_files import is_file_path
 from archgen.pipeline import CheckedProject, check_project
 
 PNG = b"\x89PNG\r\n\x1a\n"
@@ -13,7 +13,7 @@ PNG = b"\x89PNG\r\n\x1a\n"
 def check(folder: Path, text: str, name: str = "archgen.yaml") -> tuple[CheckedProject, list[str]]:
     (folder / name).write_text(f"archgen: 1\n{text}", encoding="utf-8")
     checked = check_project(folder / name if name != "archgen.yaml" else folder)
-    found = [each for each in checked.findings if each.rule == MISSING_FILE.name]
+    found = [each for each in checked.findings if each.rule == "missing-file"]
     return checked, [
         f"{each.span.line}:{each.span.column} {each.element}: {each.message} | {each.help}" for each in found
     ]

@@ -6,7 +6,6 @@ from pathlib import Path
 
 import pytest
 
-from archgen.link.node_parameter_files import MISSING_PARAMETER_FILE
 from archgen.pipeline import check_project
 
 
@@ -19,7 +18,7 @@ def findings_of(folder: Path, node: str, files: tuple[str, ...], project_file: s
     (folder / project_file).write_text(text, encoding="utf-8")
     path = folder if project_file == "archgen.yaml" else folder / project_file
     found = check_project(path).findings
-    return [f"{d.span.line}:{d.span.column} {d.message}" for d in found if d.rule == MISSING_PARAMETER_FILE.name]
+    return [f"{d.span.line}:{d.span.column} {d.message}" for d in found if d.rule == "missing-parameter-file"]
 
 
 @pytest.mark.parametrize(

@@ -2,13 +2,20 @@
 
 from __future__ import annotations
 
-from archgen import link
+from archgen.diagnostics.stage_rules import LINKING_RULES, MERGING_RULES
 
 
 def test_what_later_stages_rely_on_cannot_be_switched_off() -> None:
-    assert {rule.name: (str(rule.severity), rule.fixed) for rule in link.RULES} == {
+    assert {rule.name: (str(rule.severity), rule.fixed) for rule in (*MERGING_RULES, *LINKING_RULES)} == {
         "conflicting-values": ("error", True),
         "undeclared-element": ("error", True),
+        "unknown-port": ("error", True),
+        "unknown-component": ("error", True),
+        "changed-reference": ("error", True),
+        "circular-types": ("error", True),
+        "abstract-type": ("error", True),
+        "narrower-type": ("error", True),
+        "too-many-elements": ("error", True),
         "unknown-reference": ("error", True),
         "ambiguous-reference": ("error", True),
         "hidden-reference": ("warning", False),

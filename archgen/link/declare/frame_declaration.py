@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 
-from archgen.diagnostics.diagnostic import Diagnostic, Label, Rule, Severity
+from archgen.diagnostics.diagnostic import Diagnostic, Label
 from archgen.frozen import NamedTuple
 from archgen.link import mapping_values, sanity_checks
 from archgen.link.declare.handed_parameters import HandedParameters
@@ -111,11 +111,3 @@ def _diagnose_duplicate(second_frame: Frame, first_frame: Frame) -> Diagnostic:
         help="a frame has one parent and one writer: keep one of them, or give each robot's frames names of their own",
         element=second_frame.answering_element,
     )
-
-
-DUPLICATE_FRAME = Rule(
-    "duplicate-frame",
-    Severity.ERROR,
-    "A frame is declared twice.",
-    fixed=True,
-)
