@@ -64,7 +64,7 @@ def _run_verb() -> None:
     import click
 
     from archgen.cli import main as verbs
-    from archgen.diagnostics.safe_text import make_visible
+    from archgen.diagnostics import make_visible
     from archgen.installed_plugins import PluginRefusedError
 
     try:

@@ -18,7 +18,7 @@ from typing import TYPE_CHECKING
 from archgen import pipeline
 from archgen.analyses import size_counts as size_analysis
 from archgen.checking import code_ownership
-from archgen.diagnostics.diagnostic import Diagnostic
+from archgen.diagnostics import Diagnostic
 from archgen.frozen import dataclass, replace
 from archgen.model.architecture import Architecture
 from archgen.model.selector_evaluation import Selection

@@ -29,7 +29,7 @@ from archgen.checking.derived_projects import (
 )
 from archgen.checking.linked_project import PartMemory
 from archgen.checking.merged_project import merge_project
-from archgen.diagnostics.diagnostic import Diagnostic
+from archgen.diagnostics import Diagnostic
 from archgen.project import LoadedProject, ParsedSlices
 from archgen.timing.run_analysis import AnalysisMemory
 

@@ -35,16 +35,15 @@ from archgen.analyses import (
     topic_sources,
     type_mapping,
 )
-from archgen.diagnostics.diagnostic import Diagnostic, Rule
+from archgen.diagnostics import Diagnostic, Rule, Span
 from archgen.diagnostics.rule_options import read_option_values
-from archgen.diagnostics.source_span import Span
 from archgen.timing.run_analysis import AnalysisMemory
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Iterator, Mapping
     from fractions import Fraction
 
-    from archgen.diagnostics.diagnostic import Severity
+    from archgen.diagnostics import Severity
     from archgen.diagnostics.rule_options import OptionValues, RuleOption
     from archgen.model.architecture import Architecture
     from archgen.timing.analysis import Analysis

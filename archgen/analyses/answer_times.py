@@ -6,10 +6,8 @@ from collections import defaultdict
 from collections.abc import Iterator, Mapping, Sequence
 from fractions import Fraction
 
-from archgen.diagnostics.common_wording import join_first, join_words
-from archgen.diagnostics.diagnostic import Diagnostic, Label, Severity
+from archgen.diagnostics import NO_SPAN, Diagnostic, Label, Severity, Span, join_first, join_words
 from archgen.diagnostics.rule_options import RuleOption, format_percentage
-from archgen.diagnostics.source_span import NO_SPAN, Span
 from archgen.frozen import NamedTuple
 from archgen.model.architecture import Architecture
 from archgen.model.component import Component, PerformanceIndicator

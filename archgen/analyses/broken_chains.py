@@ -6,9 +6,7 @@ from collections import defaultdict
 from collections.abc import Collection, Iterator, Mapping
 from itertools import pairwise
 
-from archgen.diagnostics.common_wording import join_words
-from archgen.diagnostics.diagnostic import Diagnostic, Label, Severity
-from archgen.diagnostics.suggestions import find_closest
+from archgen.diagnostics import Diagnostic, Label, Severity, find_closest, join_words
 from archgen.model import flow_graph
 from archgen.model.architecture import Architecture, Chain, UseCase, Waypoint
 from archgen.model.component import Input

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from archgen.diagnostics.diagnostic import Diagnostic, Severity
+from archgen.diagnostics import Diagnostic, Severity
 from archgen.frozen import dataclass
 from archgen.model.architecture import Architecture
 from archgen.model.component import Component, Connection

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
 
-from archgen.diagnostics.diagnostic import Diagnostic, Label, Severity, diagnose_repetition
+from archgen.diagnostics import Diagnostic, Label, Severity, diagnose_repetition
 from archgen.model.architecture import Architecture
 from archgen.model.component import Component, Connection, Output
 from archgen.model.library_ports import is_offered_by_library, waits_for_calls

@@ -5,8 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from itertools import chain
 
-from archgen.diagnostics.diagnostic import Diagnostic, Label, Severity
-from archgen.diagnostics.source_span import NO_SPAN, Span
+from archgen.diagnostics import NO_SPAN, Diagnostic, Label, Severity, Span
 from archgen.frozen import NamedTuple
 from archgen.model.architecture import Architecture
 from archgen.model.component_nesting import list_described_outputs, list_relied_outputs

@@ -5,10 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from itertools import islice
 
-from archgen.diagnostics.common_wording import join_words, keep_first
-from archgen.diagnostics.diagnostic import Diagnostic, Label, Severity
-from archgen.diagnostics.source_span import Span
-from archgen.diagnostics.suggestions import find_closest
+from archgen.diagnostics import Diagnostic, Label, Severity, Span, find_closest, join_words, keep_first
 from archgen.frozen import NamedTuple
 from archgen.model.architecture import Architecture
 from archgen.model.component_nesting import list_described_outputs

@@ -6,9 +6,7 @@ from collections import defaultdict
 from collections.abc import Iterator, Mapping
 from itertools import combinations
 
-from archgen.diagnostics.common_wording import join_words
-from archgen.diagnostics.diagnostic import Diagnostic, Label, Severity
-from archgen.diagnostics.source_span import NO_SPAN
+from archgen.diagnostics import NO_SPAN, Diagnostic, Label, Severity, join_words
 from archgen.model.architecture import Architecture
 from archgen.model.node import Node, Topic
 from archgen.model.port_media import ROS

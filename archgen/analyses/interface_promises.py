@@ -4,9 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from archgen.diagnostics.common_wording import join_words
-from archgen.diagnostics.diagnostic import Diagnostic, Label, Severity
-from archgen.diagnostics.source_span import NO_SPAN
+from archgen.diagnostics import NO_SPAN, Diagnostic, Label, Severity, join_words
 from archgen.model.architecture import Architecture
 from archgen.model.component import Output
 from archgen.model.component_nesting import ReliedOutput, list_described_outputs, list_relied_outputs

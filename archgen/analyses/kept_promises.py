@@ -6,8 +6,7 @@ from collections import defaultdict
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from fractions import Fraction
 
-from archgen.diagnostics.diagnostic import Diagnostic, Label, Severity
-from archgen.diagnostics.source_span import NO_SPAN, Span
+from archgen.diagnostics import NO_SPAN, Diagnostic, Label, Severity, Span
 from archgen.frozen import NamedTuple
 from archgen.grouping import group_pairs
 from archgen.model.architecture import Architecture

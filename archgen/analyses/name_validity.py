@@ -6,8 +6,7 @@ import re
 from collections.abc import Iterable, Iterator
 
 from archgen.derivation.wire.wire_names import expand_name, find_name_fault, find_node_name_fault
-from archgen.diagnostics.diagnostic import Diagnostic, Label, Severity
-from archgen.diagnostics.source_span import NO_SPAN, Span
+from archgen.diagnostics import NO_SPAN, Diagnostic, Label, Severity, Span
 from archgen.model.architecture import Architecture
 from archgen.model.deployment import Container
 from archgen.model.node import Node, PortUse

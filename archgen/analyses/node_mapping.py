@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections import defaultdict
 from collections.abc import Iterator, Mapping
 
-from archgen.diagnostics.diagnostic import Diagnostic, Label, Severity
+from archgen.diagnostics import Diagnostic, Label, Severity
 from archgen.model.architecture import Architecture
 from archgen.model.component import Component, Input
 from archgen.model.node import Node

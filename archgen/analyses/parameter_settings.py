@@ -5,10 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from archgen.derivation.wire.running_state import CLOCK_PARAMETER
-from archgen.diagnostics.common_wording import join_words
-from archgen.diagnostics.diagnostic import Diagnostic, Label, Severity
-from archgen.diagnostics.source_span import NO_SPAN, Span
-from archgen.diagnostics.suggestions import did_you_mean
+from archgen.diagnostics import NO_SPAN, Diagnostic, Label, Severity, Span, did_you_mean, join_words
 from archgen.model.architecture import Architecture
 from archgen.model.component import Component
 from archgen.model.node import Node, PortUse

@@ -4,9 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Collection, Iterator
 
-from archgen.diagnostics.common_wording import join_first
-from archgen.diagnostics.diagnostic import Diagnostic, Label, Severity
-from archgen.diagnostics.source_span import Span
+from archgen.diagnostics import Diagnostic, Label, Severity, Span, join_first
 from archgen.frozen import NamedTuple
 from archgen.model.architecture import Architecture, Policy, SourceDemand
 from archgen.model.component import Connection, Input, Output

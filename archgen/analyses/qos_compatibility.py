@@ -17,10 +17,7 @@ from archgen.derivation.wire.qos_overrides import (
     read_policy,
 )
 from archgen.derivation.wire.running_state import domain_of
-from archgen.diagnostics.common_wording import join_words
-from archgen.diagnostics.diagnostic import Diagnostic, Label, Severity
-from archgen.diagnostics.source_span import NO_SPAN, Span
-from archgen.diagnostics.suggestions import did_you_mean
+from archgen.diagnostics import NO_SPAN, Diagnostic, Label, Severity, Span, did_you_mean, join_words
 from archgen.frozen import NamedTuple
 from archgen.grouping import group_pairs
 from archgen.model.architecture import Architecture

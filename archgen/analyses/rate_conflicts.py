@@ -7,10 +7,8 @@ from collections import Counter, defaultdict
 from collections.abc import Collection, Iterator
 from fractions import Fraction
 
-from archgen.diagnostics.common_wording import join_words
-from archgen.diagnostics.diagnostic import Diagnostic, Label, Severity
+from archgen.diagnostics import NO_SPAN, Diagnostic, Label, Severity, join_words
 from archgen.diagnostics.rule_options import RuleOption
-from archgen.diagnostics.source_span import NO_SPAN
 from archgen.model.architecture import Architecture
 from archgen.model.component import Component
 from archgen.timing.analysis import Analysis, EdgeFit

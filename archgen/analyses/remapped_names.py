@@ -16,9 +16,7 @@ from archgen.derivation.wire.wire_names import (
     read_arguments,
     read_remaps,
 )
-from archgen.diagnostics.common_wording import join_words
-from archgen.diagnostics.diagnostic import Diagnostic, Label, Severity
-from archgen.diagnostics.suggestions import find_closest
+from archgen.diagnostics import Diagnostic, Label, Severity, find_closest, join_words
 from archgen.model.architecture import Architecture
 from archgen.model.common_callbacks import is_common_callback
 from archgen.model.node import Endpoint, Node

@@ -7,10 +7,7 @@ from collections.abc import Iterator, Mapping
 from functools import lru_cache
 from itertools import dropwhile
 
-from archgen.diagnostics.common_wording import join_words, keep_first
-from archgen.diagnostics.diagnostic import Diagnostic, Label, Severity
-from archgen.diagnostics.source_span import Span
-from archgen.diagnostics.suggestions import did_you_mean, find_closest
+from archgen.diagnostics import Diagnostic, Label, Severity, Span, did_you_mean, find_closest, join_words, keep_first
 from archgen.model.architecture import Architecture
 from archgen.model.component import Component
 from archgen.model.requirement import Requirement, add_wholes, index_parts

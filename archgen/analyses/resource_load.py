@@ -5,9 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from fractions import Fraction
 
-from archgen.diagnostics.diagnostic import Diagnostic, Label, Severity
+from archgen.diagnostics import NO_SPAN, Diagnostic, Label, Severity
 from archgen.diagnostics.rule_options import RuleOption, format_percentage
-from archgen.diagnostics.source_span import NO_SPAN
 from archgen.model.architecture import Architecture
 from archgen.timing.analysis import Analysis, HostLoad
 from archgen.timing.figures.figure_wording import format_number

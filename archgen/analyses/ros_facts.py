@@ -4,10 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from archgen.diagnostics.common_wording import join_words
-from archgen.diagnostics.diagnostic import Diagnostic, Label, Severity
-from archgen.diagnostics.source_span import NO_SPAN, Span, first_written_span
-from archgen.diagnostics.suggestions import find_closest
+from archgen.diagnostics import NO_SPAN, Diagnostic, Label, Severity, Span, find_closest, first_written_span, join_words
 from archgen.frozen import NamedTuple
 from archgen.model.architecture import Architecture
 from archgen.model.component import Input, Output

@@ -12,9 +12,7 @@ from archgen.derivation.wire.running_state import (
     is_filled_in,
     read_domain,
 )
-from archgen.diagnostics.common_wording import join_words
-from archgen.diagnostics.diagnostic import Diagnostic, Label, Severity
-from archgen.diagnostics.source_span import Span
+from archgen.diagnostics import Diagnostic, Label, Severity, Span, join_words
 from archgen.model.architecture import Architecture
 from archgen.model.deployment import Container
 from archgen.model.node import Endpoint, Node

@@ -6,10 +6,7 @@ from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
 from archgen.derivation.ros_names import shared_topic_names
-from archgen.diagnostics.common_wording import join_words
-from archgen.diagnostics.diagnostic import Diagnostic, Label, Severity
-from archgen.diagnostics.source_span import Span
-from archgen.diagnostics.suggestions import did_you_mean
+from archgen.diagnostics import Diagnostic, Label, Severity, Span, did_you_mean, join_words
 from archgen.model.architecture import Architecture
 from archgen.model.node import Node, Topic
 from archgen.model.start_up import DEFAULT_PHASE, NO_START

@@ -6,8 +6,7 @@ from collections import defaultdict
 from collections.abc import Iterator
 
 from archgen.derivation.wire.running_state import ANY_NODE, RunningStates
-from archgen.diagnostics.diagnostic import Diagnostic, Label, Severity
-from archgen.diagnostics.source_span import Span
+from archgen.diagnostics import Diagnostic, Label, Severity, Span
 from archgen.model.architecture import Architecture
 from archgen.model.declared_timing import Timing
 from archgen.model.node import Endpoint, Node

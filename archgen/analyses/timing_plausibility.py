@@ -6,10 +6,8 @@ from collections import Counter, defaultdict
 from collections.abc import Iterator, Mapping
 from fractions import Fraction
 
-from archgen.diagnostics.common_wording import join_words
-from archgen.diagnostics.diagnostic import Diagnostic, Label, Severity
+from archgen.diagnostics import Diagnostic, Label, Severity, Span, join_words
 from archgen.diagnostics.rule_options import RuleOption, format_percentage
-from archgen.diagnostics.source_span import Span
 from archgen.model.architecture import Architecture
 from archgen.model.declared_timing import Timing
 from archgen.model.deployment import Host

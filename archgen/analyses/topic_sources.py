@@ -7,8 +7,7 @@ from collections import defaultdict
 from collections.abc import Iterator, Mapping
 from functools import cached_property
 
-from archgen.diagnostics.diagnostic import Diagnostic, Label, Severity
-from archgen.diagnostics.source_span import NO_SPAN, Span
+from archgen.diagnostics import NO_SPAN, Diagnostic, Label, Severity, Span
 from archgen.model.architecture import Architecture
 from archgen.model.message_types import flow_of
 from archgen.model.node import Endpoint, FlowKind, PortUse

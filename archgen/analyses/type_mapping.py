@@ -5,9 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator
 from collections.abc import Set as AbstractSet
 
-from archgen.diagnostics.diagnostic import Diagnostic, Label, Severity
-from archgen.diagnostics.source_span import NO_SPAN, Span
-from archgen.diagnostics.suggestions import did_you_mean
+from archgen.diagnostics import NO_SPAN, Diagnostic, Label, Severity, Span, did_you_mean
 from archgen.model.architecture import Architecture
 from archgen.model.component import Input, Output
 from archgen.model.generic_names import read_generic_name

@@ -6,8 +6,7 @@ from collections.abc import Iterable, Mapping
 from functools import cache
 
 from archgen import analyses, conformance, findings
-from archgen.diagnostics import stage_rules
-from archgen.diagnostics.diagnostic import Diagnostic, Rule, Severity
+from archgen.diagnostics import Diagnostic, Rule, Severity, stage_rules
 from archgen.findings import rule_table
 from archgen.findings.rule_table import FAILED_RULE
 from archgen.installed_plugins import RULES, list_entries

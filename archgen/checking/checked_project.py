@@ -8,9 +8,8 @@ from typing import TYPE_CHECKING
 
 from archgen.checking.all_rules import READING_RULES, index_all_rules
 from archgen.conformance.seen_record import RECORD_FILE
-from archgen.diagnostics.diagnostic import Diagnostic, Severity
+from archgen.diagnostics import Diagnostic, Severity, SourceTexts
 from archgen.diagnostics.rule_options import OptionValues
-from archgen.diagnostics.source_span import SourceTexts
 from archgen.frozen import dataclass, field
 from archgen.link.report_chapters import ReportChapters
 from archgen.model.architecture import Architecture

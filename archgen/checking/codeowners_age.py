@@ -8,9 +8,7 @@ from pathlib import Path
 
 from archgen.checking.all_rules import index_all_rules
 from archgen.checking.checked_project import CheckedProject
-from archgen.diagnostics.common_wording import join_words, keep_first
-from archgen.diagnostics.diagnostic import Diagnostic, Severity, settle_diagnostics
-from archgen.diagnostics.source_span import Span
+from archgen.diagnostics import Diagnostic, Severity, Span, join_words, keep_first, settle_diagnostics
 from archgen.findings.rule_table import STALE_CODEOWNERS
 from archgen.frozen import replace
 from archgen.syntax.folder_files import FolderFiles

@@ -11,8 +11,7 @@ from archgen.checking.checked_project import CheckedProject
 from archgen.checking.linked_project import PartMemory
 from archgen.checking.merged_project import MergedProject, merge_project
 from archgen.checking.project_judging import judge_merged_project
-from archgen.diagnostics.common_wording import join_words
-from archgen.diagnostics.suggestions import did_you_mean
+from archgen.diagnostics import did_you_mean, join_words
 from archgen.findings import instance_findings
 from archgen.frozen import replace
 from archgen.link import mapping_values, slice_merging

@@ -13,7 +13,7 @@ from archgen import compose, derivation, link
 from archgen.checking.merged_project import MergedProject
 from archgen.compose.expanded_project import ExpandedProject
 from archgen.derivation.derived_parts import DerivedParts
-from archgen.diagnostics.diagnostic import Diagnostic
+from archgen.diagnostics import Diagnostic
 from archgen.frozen import dataclass, replace
 from archgen.link import element_outline, interface_sources, named_files, node_parameter_files
 from archgen.link.declare.type_declaration import DeclaredTypes

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from archgen import project
 from archgen.checking.all_rules import list_structural_errors
-from archgen.diagnostics.diagnostic import Diagnostic
+from archgen.diagnostics import Diagnostic
 from archgen.frozen import dataclass
 from archgen.link import library_merging, slice_merging
 from archgen.link.variants import variant_order

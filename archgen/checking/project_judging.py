@@ -15,10 +15,8 @@ from archgen.checking.all_rules import index_all_rules, list_structural_errors
 from archgen.checking.checked_project import CheckedProject
 from archgen.checking.linked_project import LinkedProject, PartMemory, link_merged_project
 from archgen.checking.merged_project import MergedProject
-from archgen.diagnostics.diagnostic import Diagnostic, Label, Severity, settle_diagnostics
+from archgen.diagnostics import Diagnostic, Label, Severity, SourceTexts, Span, find_closest, settle_diagnostics
 from archgen.diagnostics.rule_options import OptionValues
-from archgen.diagnostics.source_span import SourceTexts, Span
-from archgen.diagnostics.suggestions import find_closest
 from archgen.findings import error_aftermath, ignore_comments, instance_findings, rule_table
 from archgen.frozen import NamedTuple, replace
 from archgen.installed_plugins import RULES, list_entries

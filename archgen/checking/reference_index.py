@@ -11,7 +11,7 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from itertools import chain
 
 from archgen.checking.checked_project import CheckedProject
-from archgen.diagnostics.source_span import NO_SPAN, SourceTexts, Span
+from archgen.diagnostics import NO_SPAN, SourceTexts, Span
 from archgen.frozen import NamedTuple, dataclass, field
 from archgen.grouping import group_pairs
 from archgen.language.language_tables import OFFERS, SECTION_KINDS

@@ -105,7 +105,7 @@ class VerbGroup(click.Group):
         elif args == ["version"]:
             _print_version(ctx, None, is_requested=True)
         if args and args[0] not in VERBS and not args[0].startswith("-"):
-            from archgen.diagnostics.suggestions import did_you_mean
+            from archgen.diagnostics import did_you_mean
 
             guess = did_you_mean(args[0], VERBS)
             ctx.fail(f"there is no verb '{args[0]}'" + (f"; {guess}" if guess else ""))

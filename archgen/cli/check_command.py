@@ -12,8 +12,7 @@ from typing import TYPE_CHECKING, NoReturn
 import click
 
 from archgen.cli import asked_files, command_support, finding_documents, shared_options
-from archgen.diagnostics.diagnostic import Diagnostic, Severity
-from archgen.diagnostics.safe_text import make_visible
+from archgen.diagnostics import Diagnostic, Severity, make_visible
 from archgen.frozen import replace
 
 if TYPE_CHECKING:

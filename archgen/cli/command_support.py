@@ -14,15 +14,20 @@ from typing import TYPE_CHECKING, NoReturn, TextIO, TypeVar
 import click
 
 from archgen.cli.shared_options import find_asked_variants
-from archgen.diagnostics.common_wording import join_first
-from archgen.diagnostics.diagnostic import Diagnostic, Severity, settle_diagnostics, sort_gravest_first
-from archgen.diagnostics.safe_text import make_visible
-from archgen.diagnostics.suggestions import did_you_mean
+from archgen.diagnostics import (
+    Diagnostic,
+    Severity,
+    did_you_mean,
+    join_first,
+    make_visible,
+    settle_diagnostics,
+    sort_gravest_first,
+)
 from archgen.diagnostics.text_columns import find_width
 from archgen.products.output_options import OutputOptions
 
 if TYPE_CHECKING:
-    from archgen.diagnostics.source_span import SourceTexts
+    from archgen.diagnostics import SourceTexts
     from archgen.edit.element_edit import FileEdit
     from archgen.edit.measured_slice import MeasuredSlice
     from archgen.edit.requirement_slice import RequirementSlice

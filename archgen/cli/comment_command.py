@@ -7,7 +7,7 @@ from pathlib import Path
 
 import click
 
-from archgen.diagnostics.safe_text import make_visible
+from archgen.diagnostics import make_visible
 
 
 @click.command("comment")

@@ -11,7 +11,7 @@ from archgen import pipeline, project
 from archgen.compose import list_type_entries
 from archgen.compose.type_expressions import TypeExpression
 from archgen.compose.type_table import TypeTable, list_generic_names
-from archgen.diagnostics.suggestions import did_you_mean
+from archgen.diagnostics import did_you_mean
 from archgen.link import library_merging, mapping_values, slice_merging
 from archgen.pipeline import CheckedProject
 from archgen.project.library_reading import SHIPPED_ID, SHIPPED_PATH, choose_distro, load_shipped_component_types

@@ -10,10 +10,7 @@ from typing import TYPE_CHECKING
 import click
 
 from archgen.cli import command_support, finding_documents, shared_options
-from archgen.diagnostics.common_wording import fit_lines, join_first
-from archgen.diagnostics.diagnostic import Severity
-from archgen.diagnostics.safe_text import make_visible
-from archgen.diagnostics.suggestions import did_you_mean
+from archgen.diagnostics import Severity, did_you_mean, fit_lines, join_first, make_visible
 from archgen.frozen import replace
 
 if TYPE_CHECKING:

@@ -11,8 +11,7 @@ from typing import TYPE_CHECKING
 import click
 
 from archgen.cli import command_support, shared_options
-from archgen.diagnostics.diagnostic import sort_gravest_first
-from archgen.diagnostics.safe_text import make_visible
+from archgen.diagnostics import make_visible, sort_gravest_first
 from archgen.products.output_options import OutputOptions
 
 if TYPE_CHECKING:

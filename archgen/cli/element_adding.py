@@ -9,11 +9,10 @@ from typing import TYPE_CHECKING, Any, NoReturn
 import click
 
 from archgen.cli import command_support, shared_options
-from archgen.diagnostics.safe_text import make_visible
-from archgen.diagnostics.suggestions import did_you_mean
+from archgen.diagnostics import did_you_mean, make_visible
 
 if TYPE_CHECKING:
-    from archgen.diagnostics.source_span import Span
+    from archgen.diagnostics import Span
     from archgen.edit.element_place import ElementPlace
     from archgen.model.component import Component
     from archgen.pipeline import CheckedProject

@@ -7,8 +7,7 @@ import sys
 
 import click
 
-from archgen.diagnostics.diagnostic import name_rule
-from archgen.diagnostics.suggestions import did_you_mean
+from archgen.diagnostics import did_you_mean, name_rule
 from archgen.diagnostics.text_columns import align_rows, find_width
 
 

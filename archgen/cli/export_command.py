@@ -76,7 +76,7 @@ def command(  # noqa: PLR0913 - one for each option
 
 def _print_content(content: bytes) -> None:
     if sys.stdout.isatty():
-        from archgen.diagnostics.safe_text import make_visible
+        from archgen.diagnostics import make_visible
 
         # What a terminal would obey is shown instead: names of the project stand in the file.
         sys.stdout.writelines(f"{make_visible(line)}\n" for line in content.decode().splitlines())

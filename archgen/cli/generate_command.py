@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 import click
 
 from archgen.cli import command_support, shared_options
-from archgen.diagnostics.safe_text import make_visible
+from archgen.diagnostics import make_visible
 from archgen.products.output_options import OutputOptions
 
 if TYPE_CHECKING:
@@ -214,7 +214,7 @@ def _print_result(result: WorkspaceResult, backend: str, *, dry_run: bool, only_
 
 def _print_conflicts(steps: Iterable[FileStep]) -> None:
     """Say of each file that stays why, but once of all for which one thing is in the way."""
-    from archgen.diagnostics.safe_text import make_visible
+    from archgen.diagnostics import make_visible
 
     alike: dict[tuple[str, str], list[FileStep]] = {}
     for step in steps:

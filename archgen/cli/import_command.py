@@ -13,8 +13,7 @@ from typing import TYPE_CHECKING, Any, Literal
 import click
 
 from archgen.cli import command_support, shared_options
-from archgen.diagnostics.safe_text import make_visible
-from archgen.diagnostics.suggestions import did_you_mean
+from archgen.diagnostics import did_you_mean, make_visible
 from archgen.importers.foreign_import import ForeignFileError
 from archgen.importers.import_formats import ImportFormat, guess_format, list_import_formats
 

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from archgen.cli import command_support
-from archgen.diagnostics.safe_text import make_visible
+from archgen.diagnostics import make_visible
 from archgen.model.known_interfaces import KNOWN_DISTROS
 
 if TYPE_CHECKING:

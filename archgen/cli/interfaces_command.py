@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, NoReturn
 import click
 
 from archgen.cli import command_support, shared_options
-from archgen.diagnostics.safe_text import make_visible
+from archgen.diagnostics import make_visible
 from archgen.products.output_options import OutputOptions
 
 if TYPE_CHECKING:

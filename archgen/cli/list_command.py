@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 import click
 
 from archgen.cli import command_support, shared_options
-from archgen.diagnostics.diagnostic import Severity
+from archgen.diagnostics import Severity
 from archgen.diagnostics.text_columns import find_width
 from archgen.language.language_tables import SECTION_KINDS
 from archgen.products.output_options import OutputOptions

@@ -14,8 +14,7 @@ from typing import TYPE_CHECKING
 import click
 
 from archgen.cli import shared_options, verb_module
-from archgen.diagnostics.diagnostic import Severity
-from archgen.diagnostics.safe_text import format_json
+from archgen.diagnostics import Severity, format_json
 
 if TYPE_CHECKING:
     from mcp.server.mcpserver import MCPServer

@@ -10,7 +10,7 @@ from typing import Any
 import click
 
 from archgen.cli import command_support, shared_options
-from archgen.diagnostics.safe_text import format_json, make_visible
+from archgen.diagnostics import format_json, make_visible
 from archgen.diagnostics.text_columns import find_width, wrap_line
 from archgen.edit.measured_slice import MeasuredSlice, make_measured_slice
 from archgen.emit.terminal import measured_text

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import click
 
 from archgen.cli import command_support, shared_options
-from archgen.diagnostics.safe_text import make_visible
+from archgen.diagnostics import make_visible
 
 if TYPE_CHECKING:
     from archgen.merge.branch_merge import BranchMerge

@@ -8,7 +8,7 @@ from pathlib import Path
 import click
 
 from archgen.cli import command_support
-from archgen.diagnostics.safe_text import make_visible
+from archgen.diagnostics import make_visible
 
 _FILE = click.Path(exists=True, dir_okay=False, path_type=Path)
 

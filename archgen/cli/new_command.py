@@ -11,11 +11,7 @@ from typing import TYPE_CHECKING, get_args
 import click
 
 from archgen.cli import command_support, element_adding, shared_options
-from archgen.diagnostics.common_wording import join_words
-from archgen.diagnostics.diagnostic import Diagnostic
-from archgen.diagnostics.safe_text import make_visible
-from archgen.diagnostics.source_span import NO_SPAN
-from archgen.diagnostics.suggestions import did_you_mean
+from archgen.diagnostics import NO_SPAN, Diagnostic, did_you_mean, join_words, make_visible
 from archgen.model.component import ComponentRole
 from archgen.model.node import NodeStatus
 

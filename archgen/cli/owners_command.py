@@ -11,8 +11,7 @@ from typing import TYPE_CHECKING
 import click
 
 from archgen.cli import command_support, shared_options
-from archgen.diagnostics.diagnostic import Severity
-from archgen.diagnostics.safe_text import defuse_command, make_visible
+from archgen.diagnostics import Severity, defuse_command, make_visible
 from archgen.diagnostics.text_columns import find_width, format_table
 
 if TYPE_CHECKING:

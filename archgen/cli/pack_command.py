@@ -8,7 +8,7 @@ from pathlib import Path
 import click
 
 from archgen.cli import command_support, shared_options
-from archgen.diagnostics.safe_text import make_visible
+from archgen.diagnostics import make_visible
 from archgen.products.output_options import OutputOptions
 from archgen.syntax.file_patterns import YAML_ENDINGS
 

@@ -12,8 +12,7 @@ import click
 
 from archgen.cli import command_support, element_adding, shared_options
 from archgen.cli.shared_options import CommandFunction
-from archgen.diagnostics.safe_text import make_visible
-from archgen.diagnostics.suggestions import did_you_mean
+from archgen.diagnostics import did_you_mean, make_visible
 
 if TYPE_CHECKING:
     from archgen.edit.refactoring.judged_version import JudgedVersion

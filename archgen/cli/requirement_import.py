@@ -9,7 +9,7 @@ from pathlib import Path
 import click
 
 from archgen.cli import command_support
-from archgen.diagnostics.safe_text import make_visible
+from archgen.diagnostics import make_visible
 from archgen.edit.requirement_slice import RequirementSlice, make_requirement_slice
 from archgen.importers.foreign_import import ForeignFileError, ImportedRequirements
 from archgen.importers.import_formats import ImportFormat

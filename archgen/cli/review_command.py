@@ -13,8 +13,7 @@ from typing import TYPE_CHECKING
 import click
 
 from archgen.cli import command_support, finding_documents, shared_options
-from archgen.diagnostics.diagnostic import Severity, sort_gravest_first
-from archgen.diagnostics.safe_text import make_visible
+from archgen.diagnostics import Severity, make_visible, sort_gravest_first
 from archgen.frozen import replace
 from archgen.products.output_options import OutputOptions
 

@@ -10,8 +10,7 @@ from typing import TYPE_CHECKING
 import click
 
 from archgen.cli import command_support, shared_options
-from archgen.diagnostics.diagnostic import Severity
-from archgen.diagnostics.safe_text import make_visible
+from archgen.diagnostics import Severity, make_visible
 from archgen.products.output_options import OutputOptions
 
 if TYPE_CHECKING:

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 import click
 
 from archgen.cli import command_support, shared_options
-from archgen.diagnostics.safe_text import defuse_command, make_visible, measure_width
+from archgen.diagnostics import defuse_command, make_visible, measure_width
 from archgen.diagnostics.text_columns import find_width, wrap_line
 
 if TYPE_CHECKING:

@@ -11,10 +11,7 @@ from typing import TYPE_CHECKING
 import click
 
 from archgen.cli import command_support, shared_options
-from archgen.diagnostics.common_wording import join_first
-from archgen.diagnostics.diagnostic import Severity
-from archgen.diagnostics.safe_text import make_visible
-from archgen.diagnostics.suggestions import did_you_mean
+from archgen.diagnostics import Severity, did_you_mean, join_first, make_visible
 from archgen.diagnostics.text_columns import find_width, wrap_line
 
 if TYPE_CHECKING:

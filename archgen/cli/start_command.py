@@ -9,7 +9,7 @@ from pathlib import Path
 import click
 
 from archgen.cli import command_support, shared_options
-from archgen.diagnostics.diagnostic import Severity
+from archgen.diagnostics import Severity
 
 
 @click.command("start")

@@ -13,9 +13,7 @@ from typing import TYPE_CHECKING
 import click
 
 from archgen.cli import command_support, shared_options
-from archgen.diagnostics.common_wording import floor_percent
-from archgen.diagnostics.diagnostic import Severity
-from archgen.diagnostics.safe_text import defuse_command, format_json, make_visible
+from archgen.diagnostics import Severity, defuse_command, floor_percent, format_json, make_visible
 from archgen.diagnostics.text_columns import find_width, format_table, wrap_line
 
 if TYPE_CHECKING:

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import click
 
 from archgen.cli import command_support, shared_options
-from archgen.diagnostics.diagnostic import Severity
+from archgen.diagnostics import Severity
 
 if TYPE_CHECKING:
     from archgen.model.architecture import Architecture

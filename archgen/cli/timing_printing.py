@@ -11,9 +11,7 @@ import click
 
 from archgen.cli import command_support
 from archgen.cli.shared_options import find_asked_variants
-from archgen.diagnostics.common_wording import join_first
-from archgen.diagnostics.safe_text import format_json, make_visible
-from archgen.diagnostics.suggestions import did_you_mean
+from archgen.diagnostics import did_you_mean, format_json, join_first, make_visible
 from archgen.diagnostics.text_columns import find_width, wrap_line
 from archgen.emit.data import timing_json
 from archgen.emit.terminal import chain_remedies, chain_text, timing_answers, timing_text

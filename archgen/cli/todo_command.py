@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import click
 
 from archgen.cli import command_support, shared_options
-from archgen.diagnostics.diagnostic import Severity
+from archgen.diagnostics import Severity
 from archgen.diagnostics.text_columns import find_width
 
 if TYPE_CHECKING:

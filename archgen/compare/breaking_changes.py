@@ -38,7 +38,7 @@ from archgen.compare.losses.weakened_demands import (
 from archgen.compare.losses.weakened_outputs import find_weakened_outputs, find_weakened_sizes
 from archgen.compare.losses.weakened_words import find_weakened_words
 from archgen.compare.timing_pair import TimingPair, is_rewording
-from archgen.diagnostics.diagnostic import Severity
+from archgen.diagnostics import Severity
 from archgen.frozen import replace
 from archgen.model.project_settings import AcceptedChange, BreakPolicy, ReviewSettings
 

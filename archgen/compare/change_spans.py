@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from archgen.compare.comparison import Change, Comparison
 from archgen.compare.kinds import ELEMENT_KINDS
-from archgen.diagnostics.source_span import NO_SPAN, Span
+from archgen.diagnostics import NO_SPAN, Span
 from archgen.model.architecture import Architecture
 from archgen.model.component import Component
 from archgen.model.declared_timing import Timing

@@ -32,7 +32,7 @@ from archgen.compare.timing_pair import (
     is_rewording,
 )
 from archgen.compare.type_edits import trace_origins
-from archgen.diagnostics.diagnostic import Diagnostic, Severity
+from archgen.diagnostics import Diagnostic, Severity
 from archgen.diagnostics.finding_identity import identify_finding, match_findings
 from archgen.frozen import NamedTuple, replace
 from archgen.model.architecture import Architecture

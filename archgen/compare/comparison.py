@@ -8,7 +8,7 @@ from archgen.compare.architecture_version import ArchitectureVersion
 from archgen.compare.matched_ids import MatchedIds
 from archgen.compare.review_facts import ReviewFacts
 from archgen.compare.version_pair import VersionPair
-from archgen.diagnostics.diagnostic import Diagnostic, Severity
+from archgen.diagnostics import Diagnostic, Severity
 from archgen.frozen import NamedTuple, dataclass, field
 from archgen.model.node import Qos
 from archgen.model.project_settings import BREAK_CATEGORIES, AcceptedChange, BreakCategory, BreakPolicy

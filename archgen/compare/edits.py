@@ -17,7 +17,7 @@ from archgen.compare.key_phrases import compare_field_lines, tick_names
 from archgen.compare.kinds import ELEMENT_KINDS
 from archgen.compare.reshaped_components import find_reshapings
 from archgen.compare.type_edits import find_type_edits
-from archgen.diagnostics.common_wording import join_words, keep_first
+from archgen.diagnostics import join_words, keep_first
 from archgen.frozen import dataclass
 from archgen.model.project_settings import BREAK_CATEGORIES, BreakCategory
 

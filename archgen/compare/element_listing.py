@@ -15,7 +15,7 @@ from archgen.compare.kinds.ros_kinds import NODE, PORT, NodePort
 from archgen.compare.matched_ids import MatchedIds
 from archgen.compare.normal_values import last_part
 from archgen.compare.version_pair import ComparedElement, ElementKey
-from archgen.diagnostics.source_span import NO_SPAN
+from archgen.diagnostics import NO_SPAN
 from archgen.model.architecture import Architecture
 from archgen.model.node import Node, PortUse
 

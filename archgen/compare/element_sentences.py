@@ -18,7 +18,7 @@ from archgen.compare.key_phrases import (
 from archgen.compare.kinds import ELEMENT_KINDS
 from archgen.compare.normal_values import ElementTitle, to_plain_data
 from archgen.compare.version_pair import ComparedElement, ElementKey, VersionPair
-from archgen.diagnostics.common_wording import join_words
+from archgen.diagnostics import join_words
 from archgen.model.graph_search import find_reachable
 from archgen.model.project_settings import agreement_file
 

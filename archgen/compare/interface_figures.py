@@ -12,7 +12,7 @@ from functools import cached_property
 
 from archgen.compare.comparison import ComparedFigure, FigureChange, FigureKey, TravelPath
 from archgen.compare.matched_ids import MatchedIds
-from archgen.diagnostics.source_span import NO_SPAN
+from archgen.diagnostics import NO_SPAN
 from archgen.model.architecture import Architecture
 from archgen.model.node import Endpoint, Qos
 from archgen.model.partner_interfaces import PartnerInterface, list_givers

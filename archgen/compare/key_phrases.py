@@ -13,7 +13,7 @@ from archgen.compare.kinds import ELEMENT_KINDS, find_key
 from archgen.compare.kinds.key_readers import NO_DAY
 from archgen.compare.text_meaning import cut_text, describe_text_difference
 from archgen.compare.version_pair import VersionPair
-from archgen.diagnostics.common_wording import fit_lines, join_words, keep_first
+from archgen.diagnostics import fit_lines, join_words, keep_first
 from archgen.frozen import NamedTuple
 from archgen.model.architecture import Architecture
 from archgen.model.start_up import DEFAULT_PHASE, PHASES

@@ -14,7 +14,7 @@ from archgen.compare.match_elements import describe_element
 from archgen.compare.normal_values import to_plain_data
 from archgen.compare.text_meaning import describe_text_difference
 from archgen.compare.version_pair import ComparedElement, ElementKey, VersionPair
-from archgen.diagnostics.common_wording import join_words
+from archgen.diagnostics import join_words
 from archgen.frozen import dataclass
 
 _MESSAGE_WEIGHT = 3

@@ -8,7 +8,7 @@ from collections.abc import Callable, Iterator, Mapping
 from archgen.compare.comparison import BoundaryChange, ChainChange, Change, Comparison
 from archgen.compare.concerned_owners import find_concerned_owners
 from archgen.compare.version_pair import ComparedElement, ElementKey
-from archgen.diagnostics.diagnostic import Diagnostic
+from archgen.diagnostics import Diagnostic
 from archgen.frozen import replace
 from archgen.model.selector_evaluation import Selection
 

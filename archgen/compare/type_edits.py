@@ -11,7 +11,7 @@ from archgen.compare.key_phrases import name_partner, tick_names
 from archgen.compare.kinds.component_type_kind import OWN_KEYS, PART_MARK
 from archgen.compare.normal_values import to_plain_data
 from archgen.compare.version_pair import VersionPair
-from archgen.diagnostics.common_wording import join_words
+from archgen.diagnostics import join_words
 from archgen.frozen import NamedTuple, dataclass, field, replace
 from archgen.model.architecture import Architecture
 from archgen.model.component import Component

@@ -3,8 +3,7 @@
 from __future__ import annotations
 
 from archgen.compose.type_expressions import TypeExpression
-from archgen.diagnostics.diagnostic import Diagnostic
-from archgen.diagnostics.source_span import Span
+from archgen.diagnostics import Diagnostic, Span
 from archgen.frozen import dataclass, field
 from archgen.syntax.yaml_tree import MappingEntry, MappingNode
 

@@ -8,8 +8,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator
 
 from archgen.compose.library_types import LibraryWord
-from archgen.diagnostics.diagnostic import Diagnostic, Label
-from archgen.diagnostics.suggestions import did_you_mean
+from archgen.diagnostics import Diagnostic, Label, did_you_mean
 from archgen.syntax.yaml_tree import MappingEntry, MappingNode, ScalarNode, SequenceNode, YamlNode
 
 _EXCLUSIVE_KEYS: tuple[tuple[frozenset[str], frozenset[str]], ...] = (

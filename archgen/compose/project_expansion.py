@@ -18,7 +18,7 @@ from archgen.compose.expanded_project import ComponentShell, ExpandedProject, Ex
 from archgen.compose.instance_overlay import InstanceOverlay
 from archgen.compose.library_types import library_of_type, list_type_entries
 from archgen.compose.type_expressions import TypeExpression
-from archgen.diagnostics.diagnostic import Diagnostic, Label
+from archgen.diagnostics import Diagnostic, Label
 from archgen.model.derived_names import derive_node_ids
 from archgen.syntax.yaml_tree import MappingEntry, MappingNode, ScalarNode, change_at, find_value, list_entries
 

@@ -7,10 +7,7 @@ from collections.abc import Callable, Iterator, Mapping
 from archgen.compose.instance_overlay import InstanceOverlay
 from archgen.compose.library_types import library_of_type
 from archgen.compose.type_expressions import MAX_TYPE_LENGTH, TypeExpression, bind_type_name, parse_type_expression
-from archgen.diagnostics.common_wording import join_words
-from archgen.diagnostics.diagnostic import Diagnostic, Label
-from archgen.diagnostics.source_span import Span
-from archgen.diagnostics.suggestions import did_you_mean
+from archgen.diagnostics import Diagnostic, Label, Span, did_you_mean, join_words
 from archgen.frozen import dataclass, field
 from archgen.syntax.yaml_tree import (
     MappingEntry,

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 
 from archgen.compose.instance_overlay import InstanceOverlay, lay_mapping, lay_node
 from archgen.compose.library_types import list_type_entries
-from archgen.diagnostics.diagnostic import Diagnostic
+from archgen.diagnostics import Diagnostic
 from archgen.language.language_tables import SECTION_KINDS
 from archgen.syntax.yaml_tree import MappingEntry, MappingNode, ScalarNode, SequenceNode, YamlNode, find_value
 

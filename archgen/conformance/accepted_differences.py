@@ -5,8 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Iterator, Sequence
 
 from archgen.conformance.conformance_rules import RULE_NAMES
-from archgen.diagnostics.diagnostic import Diagnostic
-from archgen.diagnostics.suggestions import did_you_mean
+from archgen.diagnostics import Diagnostic, did_you_mean
 from archgen.model.project_settings import AcceptedDifference
 
 _ALSO_SETTABLE = RULE_NAMES - {"stale-acceptance", "stale-import"}

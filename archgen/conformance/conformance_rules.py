@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from archgen.diagnostics.diagnostic import Rule, Severity, read_rules
+from archgen.diagnostics import Rule, Severity, read_rules
 from archgen.diagnostics.rule_options import RuleOption
 
 RULES = (

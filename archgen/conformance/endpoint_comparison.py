@@ -17,9 +17,7 @@ from archgen.conformance.model_remedy import (
 from archgen.conformance.observed_robot import ObservedEndpoint, ObservedNode, ObservedRobot
 from archgen.conformance.seen_record import name_end
 from archgen.derivation.ros_names import shared_topic_names
-from archgen.diagnostics.common_wording import join_words
-from archgen.diagnostics.diagnostic import Diagnostic, Label, Severity
-from archgen.diagnostics.source_span import first_written_span
+from archgen.diagnostics import Diagnostic, Label, Severity, first_written_span, join_words
 from archgen.frozen import NamedTuple, dataclass, field, replace
 from archgen.grouping import group_pairs
 from archgen.model.architecture import Architecture

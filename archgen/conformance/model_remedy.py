@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from typing import Any
 
 from archgen.conformance.observed_robot import ObservedEndpoint
-from archgen.diagnostics.source_span import NO_SPAN, Span
+from archgen.diagnostics import NO_SPAN, Span
 from archgen.frozen import NamedTuple
 from archgen.model.node import Endpoint, Node
 from archgen.model.parameter_values import EffectiveParameter

@@ -13,10 +13,8 @@ from archgen.conformance.endpoint_comparison import EndpointComparer, EndpointPa
 from archgen.conformance.observed_robot import ObservedEndpoint, ObservedRobot, RecordedTopic
 from archgen.conformance.seen_record import EndState, name_end
 from archgen.derivation.ros_names import shared_topic_names
-from archgen.diagnostics.common_wording import join_words
-from archgen.diagnostics.diagnostic import Diagnostic, Label, Severity
+from archgen.diagnostics import Diagnostic, Label, Severity, first_written_span, join_words
 from archgen.diagnostics.rule_options import OptionValues, read_option_values
-from archgen.diagnostics.source_span import first_written_span
 from archgen.model.architecture import Architecture
 from archgen.model.common_callbacks import is_common_callback
 from archgen.model.component import Output

@@ -12,9 +12,8 @@ from archgen.conformance.observed_robot import ObservedNode, ObservedRobot
 from archgen.conformance.recording_comparison import RecordingComparer
 from archgen.conformance.seen_record import EndState, name_end
 from archgen.derivation.wire.running_state import RunningStates, has_unknown_name, is_filled_in
-from archgen.diagnostics.diagnostic import Diagnostic, Label, Severity
+from archgen.diagnostics import NO_SPAN, Diagnostic, Label, Severity, Span, first_written_span
 from archgen.diagnostics.rule_options import OptionValues
-from archgen.diagnostics.source_span import NO_SPAN, Span, first_written_span
 from archgen.frozen import dataclass, field, replace
 from archgen.model.architecture import Architecture
 from archgen.model.node import Endpoint, Node

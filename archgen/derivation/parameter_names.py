@@ -8,7 +8,7 @@ from __future__ import annotations
 import re
 from collections.abc import Iterator, Mapping
 
-from archgen.diagnostics.source_span import Span
+from archgen.diagnostics import Span
 from archgen.frozen import dataclass, replace
 from archgen.model.architecture import Architecture
 from archgen.model.node import PortUse

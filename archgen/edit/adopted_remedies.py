@@ -6,7 +6,7 @@ from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 
 from archgen import pipeline
 from archgen.conformance.model_remedy import ModelRemedy
-from archgen.diagnostics.source_span import NO_SPAN, Span
+from archgen.diagnostics import NO_SPAN, Span
 from archgen.edit.edit_proof import first_file_of, list_new_errors
 from archgen.edit.element_edit import EditRefusedError, FileEdit
 from archgen.edit.value_change import ValueChange, edit_file

@@ -12,9 +12,7 @@ from collections.abc import Iterable, Iterator, Mapping
 from pathlib import Path
 from typing import Any
 
-from archgen.diagnostics.diagnostic import Diagnostic, Severity
-from archgen.diagnostics.safe_text import make_visible
-from archgen.diagnostics.source_span import NO_SPAN
+from archgen.diagnostics import NO_SPAN, Diagnostic, Severity, make_visible
 from archgen.frozen import NamedTuple, dataclass
 from archgen.merge.slice_merge import SliceVersions, merge_slices
 from archgen.merge.slice_reading import to_texts

@@ -14,7 +14,7 @@ from archgen.compare.architecture_version import ArchitectureVersion
 from archgen.compare.element_listing import list_elements
 from archgen.compare.matched_ids import MatchedIds
 from archgen.compare.version_pair import MAPPED_KEY, ComparedElement
-from archgen.diagnostics.diagnostic import Diagnostic, Severity
+from archgen.diagnostics import Diagnostic, Severity
 from archgen.frozen import dataclass, field
 from archgen.model.architecture import Architecture
 from archgen.model.node import Node

@@ -12,8 +12,7 @@ import re
 from collections.abc import Iterator, Sequence
 from itertools import accumulate
 
-from archgen.diagnostics.diagnostic import Diagnostic
-from archgen.diagnostics.source_span import Span
+from archgen.diagnostics import Diagnostic, Span
 from archgen.edit import edit_proof
 from archgen.edit.edit_proof import NewElement
 from archgen.edit.element_place import ElementPlace

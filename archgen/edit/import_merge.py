@@ -8,7 +8,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 from typing import Any, Literal
 
-from archgen.diagnostics.source_span import Span
+from archgen.diagnostics import Span
 from archgen.edit.earlier_import import (
     KeyPath,
     UpdatedText,

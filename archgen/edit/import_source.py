@@ -11,8 +11,7 @@ import stat
 from collections.abc import Iterable, Iterator, Sequence
 from pathlib import Path
 
-from archgen.diagnostics.diagnostic import Diagnostic
-from archgen.diagnostics.source_span import Span
+from archgen.diagnostics import Diagnostic, Span
 from archgen.edit.earlier_import import read_plain_mapping
 from archgen.merge.file_merge import SOURCE_FOLDER
 from archgen.pipeline import CheckedProject

@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import Any
 
 from archgen import pipeline
-from archgen.diagnostics.diagnostic import Diagnostic, Severity
+from archgen.diagnostics import Diagnostic, Severity
 from archgen.edit import earlier_import
 from archgen.edit.earlier_import import ImportOrigin, KeyPath, SaidValue, read_earlier_import
 from archgen.edit.edit_proof import list_new_errors

@@ -13,8 +13,7 @@ from typing import Any
 
 from archgen import pipeline
 from archgen.compose import list_type_entries
-from archgen.diagnostics.diagnostic import Diagnostic
-from archgen.diagnostics.source_span import NO_SPAN, Span
+from archgen.diagnostics import NO_SPAN, Diagnostic, Span
 from archgen.edit.edit_proof import list_new_errors, list_written_nodes, load_with_text
 from archgen.emit.own_file_marks import MEASURED_HEADER
 from archgen.frozen import dataclass, field, replace

@@ -7,7 +7,7 @@ from collections import Counter
 from collections.abc import Iterable, Sequence
 
 from archgen import pipeline
-from archgen.diagnostics.diagnostic import Diagnostic
+from archgen.diagnostics import Diagnostic
 from archgen.diagnostics.finding_identity import identify_finding
 from archgen.edit.edit_proof import first_file_of
 from archgen.edit.element_edit import EditRefusedError, FileEdit, read_editable

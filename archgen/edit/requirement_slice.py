@@ -9,7 +9,7 @@ from collections.abc import Mapping
 from typing import Any
 
 from archgen import pipeline
-from archgen.diagnostics.diagnostic import Diagnostic, Severity
+from archgen.diagnostics import Diagnostic, Severity
 from archgen.edit import earlier_import
 from archgen.edit.edit_proof import list_new_errors, load_with_text
 from archgen.frozen import dataclass, field

@@ -11,7 +11,7 @@ from pathlib import Path
 from typing import Any, Literal
 
 from archgen import resources
-from archgen.diagnostics.diagnostic import Diagnostic
+from archgen.diagnostics import Diagnostic
 from archgen.emit.manifest_parsing import (
     BACKEND_MANIFEST,
     ManifestError,

@@ -6,7 +6,7 @@ import csv
 import io
 from collections.abc import Iterable
 
-from archgen.diagnostics.safe_text import defuse_command, make_visible
+from archgen.diagnostics import defuse_command, make_visible
 
 
 def write_csv_rows(rows: Iterable[Iterable[str]]) -> str:

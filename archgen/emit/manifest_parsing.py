@@ -9,8 +9,7 @@ from pathlib import Path
 from typing import Any, NoReturn
 
 from archgen import resources
-from archgen.diagnostics.diagnostic import Diagnostic, Rule, Severity
-from archgen.diagnostics.source_span import Span
+from archgen.diagnostics import Diagnostic, Rule, Severity, Span
 from archgen.views.generation import list_view_names
 
 BACKEND_ERROR_RULE = Rule(

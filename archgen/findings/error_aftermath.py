@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
 
-from archgen.diagnostics.diagnostic import Diagnostic
+from archgen.diagnostics import Diagnostic
 
 _WHOLE_MODEL_RULES = frozenset(
     {

@@ -7,9 +7,7 @@ from collections.abc import Iterable, Iterator, Mapping
 from typing import Protocol
 
 from archgen.conformance.conformance_rules import RULE_NAMES as ROBOT_RULES
-from archgen.diagnostics.diagnostic import Diagnostic, Rule, Severity
-from archgen.diagnostics.source_span import Span
-from archgen.diagnostics.suggestions import did_you_mean
+from archgen.diagnostics import Diagnostic, Rule, Severity, Span, did_you_mean
 from archgen.frozen import fields
 from archgen.model.architecture import Architecture
 

@@ -7,9 +7,7 @@ from collections import Counter
 from collections.abc import Iterable, Iterator, Sequence
 
 from archgen.analyses import NO_LONGER_LOOKED_FOR
-from archgen.diagnostics.common_wording import join_words, keep_first
-from archgen.diagnostics.diagnostic import Diagnostic, Label
-from archgen.diagnostics.source_span import Span
+from archgen.diagnostics import Diagnostic, Label, Span, join_words, keep_first
 from archgen.frozen import replace
 from archgen.model.architecture import Architecture
 from archgen.model.component import Component

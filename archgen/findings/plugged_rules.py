@@ -8,7 +8,7 @@ from functools import cache
 from typing import Any
 
 from archgen.analyses import bound_findings
-from archgen.diagnostics.diagnostic import Diagnostic, Rule, Severity
+from archgen.diagnostics import Diagnostic, Rule, Severity
 from archgen.diagnostics.rule_options import OptionValues, RuleOption, read_option_values
 from archgen.findings.rule_table import FAILED_RULE
 from archgen.frozen import dataclass, replace

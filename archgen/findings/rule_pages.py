@@ -9,7 +9,7 @@ import textwrap
 from collections.abc import Iterable, Mapping
 
 from archgen import resources
-from archgen.diagnostics.diagnostic import Rule
+from archgen.diagnostics import Rule
 from archgen.diagnostics.text_columns import wrap_line
 from archgen.frozen import NamedTuple
 

@@ -4,15 +4,14 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from archgen.diagnostics.diagnostic import Diagnostic, Rule, Severity
-from archgen.diagnostics.suggestions import did_you_mean
+from archgen.diagnostics import Diagnostic, Rule, Severity, did_you_mean
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Mapping
     from fractions import Fraction
 
+    from archgen.diagnostics import Span
     from archgen.diagnostics.rule_options import OptionValues, WrittenOption
-    from archgen.diagnostics.source_span import Span
 
 
 def index_rules(rules: Iterable[Rule]) -> Mapping[str, Rule]:

@@ -4,9 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Collection, Mapping, Sequence
 
-from archgen.diagnostics.common_wording import join_words
-from archgen.diagnostics.diagnostic import Diagnostic
-from archgen.diagnostics.source_span import Span
+from archgen.diagnostics import Diagnostic, Span, join_words
 from archgen.frozen import replace
 from archgen.model.variant import BASE_NAME
 

@@ -7,8 +7,7 @@ import os
 from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
-from archgen.diagnostics.common_wording import join_words
-from archgen.diagnostics.safe_text import format_json
+from archgen.diagnostics import format_json, join_words
 from archgen.emit.markdown.comment_sentences import write_code, write_sentence, write_title
 from archgen.emit.markdown.limited_comment import MAX_COMMENT_SIZE, LimitedComment
 from archgen.forge.forge_api import ForgeError, run_within

@@ -5,7 +5,7 @@ from __future__ import annotations
 import os
 from pathlib import Path
 
-from archgen.diagnostics.suggestions import did_you_mean
+from archgen.diagnostics import did_you_mean
 from archgen.frozen import dataclass
 from archgen.git.git_call import run_git
 from archgen.git.git_errors import NoCommitsError, NoRepositoryError, ShallowError, UnknownRevisionError

@@ -7,7 +7,7 @@ from dataclasses import asdict
 from typing import Any
 
 from archgen.analyses.size_counts import count_mapped_connections, measure_progress
-from archgen.diagnostics.diagnostic import Diagnostic, Severity, count_by_severity
+from archgen.diagnostics import Diagnostic, Severity, count_by_severity
 from archgen.model.architecture import Architecture
 from archgen.model.project_history import FindingCounts, HistoryPoint, ProgressRow
 from archgen.pipeline import CheckedProject

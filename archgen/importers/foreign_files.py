@@ -17,7 +17,7 @@ from types import MappingProxyType
 from typing import IO
 from xml.parsers import expat
 
-from archgen.diagnostics.source_span import Span
+from archgen.diagnostics import Span
 from archgen.frozen import dataclass
 from archgen.importers.foreign_import import ForeignFileError
 from archgen.regular_files import open_named_file

@@ -11,8 +11,7 @@ from collections import Counter
 from collections.abc import Mapping
 from typing import Any, Literal
 
-from archgen.diagnostics.diagnostic import Diagnostic
-from archgen.diagnostics.source_span import SourceTexts, Span
+from archgen.diagnostics import Diagnostic, SourceTexts, Span
 from archgen.frozen import dataclass, field
 from archgen.timing.chains.measured_comparison import Observation
 from archgen.timing.chains.sample_statistics import UnmappedSamples

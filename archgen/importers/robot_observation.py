@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from archgen.conformance.observed_robot import ObservedRobot
-from archgen.diagnostics.source_span import Span
+from archgen.diagnostics import Span
 from archgen.frozen import dataclass, field, replace
 from archgen.importers.foreign_import import ForeignFileError
 from archgen.installed_plugins import list_shipped_facts, load_shipped_object

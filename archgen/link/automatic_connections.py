@@ -7,8 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 
-from archgen.diagnostics.common_wording import join_words
-from archgen.diagnostics.source_span import Span
+from archgen.diagnostics import Span, join_words
 from archgen.link import mapping_values
 from archgen.link.element_outline import ElementOutline
 from archgen.link.port_sources import PortKey, PortSource, PortSources

@@ -6,8 +6,7 @@ from collections.abc import Collection, Iterator, Mapping
 
 from archgen.compose import ExpandedProject
 from archgen.compose.expanded_project import ComponentShell
-from archgen.diagnostics.diagnostic import Diagnostic
-from archgen.diagnostics.suggestions import did_you_mean
+from archgen.diagnostics import Diagnostic, did_you_mean
 from archgen.frozen import dataclass, field
 from archgen.link import mapping_values
 from archgen.link.link_memory import LinkMemory, OutlinedPorts

@@ -11,10 +11,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Mapping
 from decimal import Decimal
 
-from archgen.diagnostics.common_wording import join_words
-from archgen.diagnostics.diagnostic import Diagnostic, Label
-from archgen.diagnostics.source_span import Span
-from archgen.diagnostics.suggestions import did_you_mean
+from archgen.diagnostics import Diagnostic, Label, Span, did_you_mean, join_words
 from archgen.frozen import NamedTuple, dataclass, replace
 from archgen.installed_backends import InstalledBackend, list_installed_backends
 from archgen.link import mapping_values

@@ -11,9 +11,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from functools import lru_cache
 from typing import TYPE_CHECKING
 
-from archgen.diagnostics.diagnostic import Diagnostic, Label
-from archgen.diagnostics.source_span import Span
-from archgen.diagnostics.suggestions import find_closest
+from archgen.diagnostics import Diagnostic, Label, Span, find_closest
 from archgen.frozen import NamedTuple, replace
 from archgen.link.data_types.field_types import UNKNOWN_FIELD_TYPE, TypeMention
 from archgen.link.shipped_interfaces import LazyInterfaces, list_answering_distros, load_shipped_interfaces

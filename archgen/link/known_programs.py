@@ -10,9 +10,7 @@ from collections import defaultdict
 from collections.abc import Iterator, Mapping, Sequence
 
 from archgen.derivation.wire.wire_names import NodeNames
-from archgen.diagnostics.common_wording import join_words
-from archgen.diagnostics.diagnostic import Diagnostic
-from archgen.diagnostics.source_span import first_written_span
+from archgen.diagnostics import Diagnostic, first_written_span, join_words
 from archgen.frozen import NamedTuple
 from archgen.model.architecture import Architecture
 from archgen.model.message_types import flow_of, full_message_name

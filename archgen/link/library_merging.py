@@ -6,7 +6,7 @@ import posixpath
 import re
 from collections.abc import Sequence
 
-from archgen.diagnostics.diagnostic import Diagnostic
+from archgen.diagnostics import Diagnostic
 from archgen.link import mapping_values
 from archgen.link.slice_merging import merge_documents
 from archgen.model.architecture import Architecture

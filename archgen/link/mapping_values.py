@@ -9,7 +9,7 @@ from collections.abc import Iterable, Iterator, Mapping
 from functools import lru_cache
 from typing import get_args
 
-from archgen.diagnostics.source_span import NO_SPAN, Span
+from archgen.diagnostics import NO_SPAN, Span
 from archgen.model import quantity
 from archgen.model.component import DiagramLayout
 from archgen.model.declared_timing import SchedulingOrder

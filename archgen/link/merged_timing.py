@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Collection, Iterable, Mapping
 
-from archgen.diagnostics.diagnostic import Diagnostic, Label
+from archgen.diagnostics import Diagnostic, Label
 from archgen.frozen import dataclass, fields, replace
 from archgen.link import sanity_checks
 from archgen.model.component import Component

@@ -5,8 +5,7 @@ from __future__ import annotations
 import posixpath
 from collections.abc import Iterable, Iterator
 
-from archgen.diagnostics.diagnostic import Diagnostic
-from archgen.diagnostics.suggestions import did_you_mean
+from archgen.diagnostics import Diagnostic, did_you_mean
 from archgen.frozen import NamedTuple
 from archgen.link import mapping_values
 from archgen.link.report_chapters import ReportChapters

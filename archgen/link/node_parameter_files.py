@@ -10,8 +10,7 @@ import re
 from collections import defaultdict
 from collections.abc import Iterator, Mapping
 
-from archgen.diagnostics.diagnostic import Diagnostic, Severity
-from archgen.diagnostics.source_span import Span
+from archgen.diagnostics import Diagnostic, Severity, Span
 from archgen.frozen import dataclass, field, replace
 from archgen.link import mapping_values
 from archgen.link.parameter_texts import ParameterText, find_node_values, read_parameter_text

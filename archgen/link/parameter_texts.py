@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
 
-from archgen.diagnostics.source_span import Span
+from archgen.diagnostics import Span
 from archgen.frozen import dataclass, field, replace
 from archgen.model.node import Node
 from archgen.model.parameter import MAX_NAME_LENGTH, FileRemark, ParameterValue

@@ -5,8 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Collection, Sequence
 
-from archgen.diagnostics.common_wording import join_words
-from archgen.diagnostics.suggestions import find_closest
+from archgen.diagnostics import find_closest, join_words
 from archgen.frozen import dataclass, field
 from archgen.model.path_resolver import PathResolver
 

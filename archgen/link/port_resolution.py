@@ -5,8 +5,7 @@ from __future__ import annotations
 from collections.abc import Collection, Iterable, Iterator, Mapping
 from itertools import chain
 
-from archgen.diagnostics.diagnostic import Diagnostic, Label
-from archgen.diagnostics.source_span import Span
+from archgen.diagnostics import Diagnostic, Label, Span
 from archgen.frozen import dataclass
 from archgen.link.path_guesses import take_path_end
 from archgen.link.reference_resolution import ReferenceResolver, list_known_names

@@ -8,9 +8,8 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any
 
-from archgen.diagnostics.common_wording import join_words
+from archgen.diagnostics import did_you_mean, join_words
 from archgen.diagnostics.rule_options import parse_percentage
-from archgen.diagnostics.suggestions import did_you_mean
 from archgen.frozen import dataclass, replace
 from archgen.model.architecture import Architecture
 from archgen.model.declared_timing import EXECUTOR_ORDERS, HOST_ORDERS, RESOURCE_ORDERS, FairScheduling

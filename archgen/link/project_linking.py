@@ -12,8 +12,7 @@ from collections.abc import Mapping
 from archgen.compose import ExpandedProject, expand_project, list_type_entries
 from archgen.compose.type_expressions import TypeExpression
 from archgen.derivation.wire.wire_names import apply_launch_names
-from archgen.diagnostics.diagnostic import Diagnostic
-from archgen.diagnostics.source_span import NO_SPAN, Span
+from archgen.diagnostics import NO_SPAN, Diagnostic, Span
 from archgen.link import mapping_values
 from archgen.link.declare import element_declaration, section_declaration
 from archgen.link.declare.component_declaration import declare_component_types, declare_groups

@@ -10,8 +10,7 @@ import re
 from collections import defaultdict
 from collections.abc import Iterable, Mapping
 
-from archgen.diagnostics.diagnostic import Diagnostic
-from archgen.diagnostics.source_span import Span
+from archgen.diagnostics import Diagnostic, Span
 from archgen.frozen import dataclass, field
 from archgen.language.key_paths import OWN_DATA, SLICE, find_inner_part
 from archgen.language.language_tables import BARE_PARTS, DATA_PARTS

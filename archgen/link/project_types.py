@@ -14,7 +14,7 @@ from typing import Any
 
 from archgen import resources
 from archgen.compose import ExpandedProject
-from archgen.diagnostics.diagnostic import Diagnostic, diagnose_repetition
+from archgen.diagnostics import Diagnostic, diagnose_repetition
 from archgen.frozen import NamedTuple, replace
 from archgen.link import mapping_values
 from archgen.link.data_types.field_types import TypeSources

@@ -5,8 +5,7 @@ from __future__ import annotations
 import re
 from datetime import date
 
-from archgen.diagnostics.diagnostic import Diagnostic, Label
-from archgen.diagnostics.source_span import Span
+from archgen.diagnostics import Diagnostic, Label, Span
 from archgen.frozen import dataclass
 from archgen.link import mapping_values, sanity_checks
 from archgen.model.promise import PROMISE_KEYS, Deprecation, Promise

@@ -5,7 +5,7 @@ Editors and `archgen rename` listen; nobody else pays for it.
 
 from __future__ import annotations
 
-from archgen.diagnostics.source_span import Span
+from archgen.diagnostics import Span
 from archgen.frozen import NamedTuple
 
 

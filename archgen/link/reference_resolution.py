@@ -9,9 +9,7 @@ from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, S
 from contextlib import contextmanager
 from types import MappingProxyType
 
-from archgen.diagnostics.common_wording import join_words
-from archgen.diagnostics.diagnostic import AskedName, Diagnostic, Label
-from archgen.diagnostics.source_span import NO_SPAN, Span
+from archgen.diagnostics import NO_SPAN, AskedName, Diagnostic, Label, Span, join_words
 from archgen.frozen import NamedTuple, dataclass, field, replace
 from archgen.language.language_tables import PLAIN_SECTIONS
 from archgen.link import mapping_values

@@ -17,9 +17,7 @@ from collections.abc import Iterator, Mapping
 from functools import lru_cache
 from urllib.parse import quote, unquote
 
-from archgen.diagnostics.diagnostic import Diagnostic
-from archgen.diagnostics.source_span import SourceTexts, Span
-from archgen.diagnostics.suggestions import did_you_mean
+from archgen.diagnostics import Diagnostic, SourceTexts, Span, did_you_mean
 from archgen.frozen import NamedTuple, dataclass, field
 from archgen.link import mapping_values
 from archgen.link.value_readers import read_values

@@ -10,8 +10,7 @@ from collections.abc import Collection, Iterator, Mapping
 from itertools import pairwise
 from typing import Any
 
-from archgen.diagnostics.diagnostic import Diagnostic, Label
-from archgen.diagnostics.source_span import NO_SPAN, Span
+from archgen.diagnostics import NO_SPAN, Diagnostic, Label, Span
 from archgen.frozen import replace
 from archgen.link import mapping_values
 from archgen.link.reference_resolution import ReferenceResolver

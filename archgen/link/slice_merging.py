@@ -7,9 +7,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from archgen.diagnostics.diagnostic import Diagnostic, diagnose_repetition
-from archgen.diagnostics.source_span import NO_SPAN
-from archgen.diagnostics.suggestions import did_you_mean
+from archgen.diagnostics import NO_SPAN, Diagnostic, diagnose_repetition, did_you_mean
 from archgen.grouping import group_pairs
 from archgen.language.language_tables import SUPPORTING_KEYS
 from archgen.syntax.yaml_tree import MappingEntry, MappingNode, SequenceNode, find_value, list_entries

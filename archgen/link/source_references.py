@@ -9,8 +9,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from functools import cached_property
 
-from archgen.diagnostics.diagnostic import Label
-from archgen.diagnostics.suggestions import did_you_mean
+from archgen.diagnostics import Label, did_you_mean
 from archgen.link.element_outline import ElementOutline
 from archgen.link.reference_resolution import ReferenceResolver
 from archgen.model.path_resolver import MAX_LISTED, NO_MATCH, ElementRef, PathMatch, PathResolver

@@ -9,8 +9,7 @@ import re
 from collections.abc import Iterable
 from typing import Any, get_args
 
-from archgen.diagnostics.diagnostic import Diagnostic
-from archgen.diagnostics.suggestions import NAMES_HELP, did_you_mean
+from archgen.diagnostics import NAMES_HELP, Diagnostic, did_you_mean
 from archgen.frozen import dataclass, replace
 from archgen.link import process_overrides
 from archgen.link.process_overrides import OverrideError, ProcessOverride

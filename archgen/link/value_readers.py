@@ -11,8 +11,8 @@ from fractions import Fraction
 from functools import cache, partial
 from typing import Any
 
+from archgen.diagnostics import Span
 from archgen.diagnostics.rule_options import parse_percentage
-from archgen.diagnostics.source_span import Span
 from archgen.frozen import fields
 from archgen.language.language_tables import ATTRIBUTES, DATA_PARTS, KEYS, PART_TYPES, PLACED_KEYS, WORDS
 from archgen.link import mapping_values

@@ -5,8 +5,7 @@ from __future__ import annotations
 import posixpath
 from collections.abc import Iterator
 
-from archgen.diagnostics.diagnostic import Diagnostic
-from archgen.diagnostics.suggestions import did_you_mean
+from archgen.diagnostics import Diagnostic, did_you_mean
 from archgen.model.architecture import Architecture
 from archgen.model.requirement import Requirement, Verification
 from archgen.syntax.project_files import ProjectFiles

@@ -13,8 +13,7 @@ from pathlib import Path
 
 from archgen.analyses import TIMING_RULE_NAMES
 from archgen.checking.reference_index import ReferenceIndex, index_references
-from archgen.diagnostics.diagnostic import Diagnostic
-from archgen.diagnostics.source_span import SourceTexts, Span
+from archgen.diagnostics import Diagnostic, SourceTexts, Span
 from archgen.findings.variant_findings import MISSING_RULES, UNUSED_RULES
 from archgen.frozen import NamedTuple, replace
 from archgen.link.reference_listening import HeardReferences

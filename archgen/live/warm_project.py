@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from pathlib import Path
 
-from archgen.diagnostics.diagnostic import Diagnostic, settle_diagnostics
+from archgen.diagnostics import Diagnostic, settle_diagnostics
 from archgen.frozen import dataclass, replace
 from archgen.pipeline import CheckedProject, VersionCache, check_loaded_project, index_all_rules
 from archgen.project.project_loading import load_from_files

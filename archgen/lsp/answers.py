@@ -11,8 +11,7 @@ from typing import TYPE_CHECKING, Any
 from lsprotocol import types
 from pygls.exceptions import JsonRpcException
 
-from archgen.diagnostics.safe_text import make_visible
-from archgen.diagnostics.source_span import Span
+from archgen.diagnostics import Span, make_visible
 from archgen.diagnostics.suggested_fixes import TextEdit
 from archgen.edit.element_edit import EditRefusedError, FileEdit
 from archgen.edit.formatted_slices import format_text, keeps_findings

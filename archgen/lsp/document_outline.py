@@ -8,7 +8,7 @@ from collections.abc import Iterator, Sequence
 from lsprotocol import types
 from pygls.workspace import PositionCodec
 
-from archgen.diagnostics.source_span import Span
+from archgen.diagnostics import Span
 from archgen.language.key_paths import OWN_DATA, SLICE, find_inner_part
 from archgen.live.edited_project import EditedProject
 from archgen.lsp.text_positions import to_range

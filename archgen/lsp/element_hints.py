@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator
 
 from archgen.checking.reference_index import WrittenName
-from archgen.diagnostics.source_span import Span
+from archgen.diagnostics import Span
 from archgen.frozen import NamedTuple
 from archgen.live.edited_project import EditedProject
 from archgen.model.port_media import ROS

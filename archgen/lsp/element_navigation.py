@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator
 
 from archgen.checking.reference_index import Element, WrittenName
-from archgen.diagnostics.source_span import Span
+from archgen.diagnostics import Span
 from archgen.frozen import NamedTuple
 from archgen.language.key_paths import SLICE, find_inner_part
 from archgen.language.language_tables import OFFERS

@@ -19,9 +19,7 @@ from pygls.lsp.server import LanguageServer
 from pygls.protocol import LanguageServerProtocol
 from pygls.workspace import PositionCodec
 
-from archgen.diagnostics.diagnostic import Diagnostic, Severity
-from archgen.diagnostics.safe_text import make_visible
-from archgen.diagnostics.source_span import Span
+from archgen.diagnostics import Diagnostic, Severity, Span, make_visible
 from archgen.findings.variant_findings import UNUSED_RULES, phrase_absence
 from archgen.live.edited_project import EditedProject, WholeCheck
 from archgen.live.file_watch import WatchedPlaces, watch_files

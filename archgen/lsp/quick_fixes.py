@@ -5,8 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Iterable, Iterator, Sequence
 
-from archgen.diagnostics.diagnostic import Diagnostic
-from archgen.diagnostics.source_span import SourceTexts, Span
+from archgen.diagnostics import Diagnostic, SourceTexts, Span
 from archgen.diagnostics.suggested_fixes import TextEdit, apply_edits, suggest_fix
 from archgen.edit.certain_fixes import join_edits
 from archgen.edit.edit_proof import NewElement, find_consequences

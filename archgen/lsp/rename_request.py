@@ -6,7 +6,7 @@ import string
 from collections.abc import Iterator
 
 from archgen.checking.reference_index import Element
-from archgen.diagnostics.source_span import Span
+from archgen.diagnostics import Span
 from archgen.diagnostics.suggested_fixes import TextEdit
 from archgen.edit.element_edit import BYTE_ORDER_MARK, EditRefusedError, FileEdit
 from archgen.edit.refactoring.element_rename import plan_rename

@@ -7,7 +7,7 @@ from collections.abc import Callable
 from lsprotocol import types
 from pygls.workspace import PositionCodec
 
-from archgen.diagnostics.source_span import Span
+from archgen.diagnostics import Span
 
 FindLine = Callable[[str, int], str | None]
 """Returns a line of a file without its end, by its number from 1; None where there is none."""

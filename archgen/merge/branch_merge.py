@@ -7,7 +7,7 @@ from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
 from pathlib import Path
 
 from archgen import git, pipeline, project
-from archgen.diagnostics.diagnostic import Diagnostic, Severity
+from archgen.diagnostics import Diagnostic, Severity
 from archgen.diagnostics.finding_identity import FindingIdentity, identify_finding
 from archgen.frozen import NamedTuple, dataclass, field, replace
 from archgen.git import GitError

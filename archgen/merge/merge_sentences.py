@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 
-from archgen.diagnostics.safe_text import format_json
+from archgen.diagnostics import format_json
 from archgen.emit.data.findings_data import finding_to_json
 from archgen.merge.branch_merge import BranchMerge, FileConflict
 

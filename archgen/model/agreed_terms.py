@@ -9,7 +9,7 @@ import hashlib
 import json
 from collections.abc import Mapping
 
-from archgen.diagnostics.source_span import NO_SPAN, Span
+from archgen.diagnostics import NO_SPAN, Span
 from archgen.frozen import dataclass, field
 
 SIGNATURE_FOLDER = "agreements"

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from typing import Protocol
 
-from archgen.diagnostics.source_span import Span
+from archgen.diagnostics import Span
 from archgen.frozen import NamedTuple
 from archgen.language.language_tables import ANNOTATED_KINDS, SECTION_KINDS
 from archgen.model.architecture import Architecture

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from typing import Literal
 
-from archgen.diagnostics.source_span import NO_SPAN, Span
+from archgen.diagnostics import NO_SPAN, Span
 from archgen.frozen import dataclass, field
 from archgen.model import port_media
 from archgen.model.agreed_terms import Agreement

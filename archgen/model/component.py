@@ -8,7 +8,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from typing import Literal
 
-from archgen.diagnostics.source_span import NO_SPAN, Span
+from archgen.diagnostics import NO_SPAN, Span
 from archgen.frozen import dataclass, field
 from archgen.model.coordinate_frames import Frame
 from archgen.model.declared_timing import Timing

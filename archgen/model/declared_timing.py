@@ -6,8 +6,8 @@ from collections.abc import Mapping
 from fractions import Fraction
 from typing import Literal
 
+from archgen.diagnostics import NO_SPAN, Span
 from archgen.diagnostics.rule_options import format_percentage
-from archgen.diagnostics.source_span import NO_SPAN, Span
 from archgen.frozen import dataclass, field
 from archgen.model.quantity import Quantity
 

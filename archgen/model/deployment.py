@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
-from archgen.diagnostics.source_span import NO_SPAN, Span
+from archgen.diagnostics import NO_SPAN, Span
 from archgen.frozen import dataclass, field
 from archgen.model.declared_timing import FairScheduling, SchedulingOrder
 from archgen.model.element_annotations import NO_ANNOTATIONS, ElementAnnotations

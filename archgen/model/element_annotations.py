@@ -7,7 +7,7 @@ from collections.abc import Mapping
 from decimal import Decimal
 from typing import Literal
 
-from archgen.diagnostics.source_span import Span
+from archgen.diagnostics import Span
 from archgen.frozen import NamedTuple, dataclass, field
 
 PropertyType = Literal["boolean", "integer", "float", "string", "date"]

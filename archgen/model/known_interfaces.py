@@ -10,7 +10,7 @@ from collections.abc import Iterator, Mapping
 from functools import lru_cache
 from typing import Literal
 
-from archgen.diagnostics.suggestions import count_slips, find_closest
+from archgen.diagnostics import count_slips, find_closest
 from archgen.frozen import NamedTuple, dataclass, field
 from archgen.model.ros_distro import PAST_DISTROS, is_ros_1
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
-from archgen.diagnostics.source_span import Span
+from archgen.diagnostics import Span
 from archgen.frozen import NamedTuple
 
 ElementPlace = tuple[str, int, int]

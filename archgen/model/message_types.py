@@ -6,7 +6,7 @@ import re
 from collections.abc import Iterator, Mapping
 from typing import Literal
 
-from archgen.diagnostics.source_span import NO_SPAN, Span
+from archgen.diagnostics import NO_SPAN, Span
 from archgen.frozen import dataclass, field
 from archgen.model.element_annotations import NO_ANNOTATIONS, ElementAnnotations
 from archgen.model.promise import Deprecation

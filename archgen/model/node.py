@@ -10,7 +10,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Literal
 
-from archgen.diagnostics.source_span import NO_SPAN, Span
+from archgen.diagnostics import NO_SPAN, Span
 from archgen.frozen import dataclass, field, replace
 from archgen.model.declared_timing import SchedulingOrder, Timing
 from archgen.model.element_annotations import NO_ANNOTATIONS, ElementAnnotations

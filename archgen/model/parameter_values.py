@@ -7,7 +7,7 @@ import re
 from collections.abc import Mapping
 from typing import Literal, TypeGuard
 
-from archgen.diagnostics.source_span import NO_SPAN, Span
+from archgen.diagnostics import NO_SPAN, Span
 from archgen.frozen import dataclass
 from archgen.model.architecture import Architecture
 from archgen.model.component import Component

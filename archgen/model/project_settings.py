@@ -6,8 +6,7 @@ from collections.abc import Mapping
 from fractions import Fraction
 from typing import Literal
 
-from archgen.diagnostics.diagnostic import Severity
-from archgen.diagnostics.source_span import NO_SPAN, Span
+from archgen.diagnostics import NO_SPAN, Severity, Span
 from archgen.frozen import dataclass, field, fields
 
 

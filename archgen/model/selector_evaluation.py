@@ -9,7 +9,7 @@ from collections import defaultdict
 from collections.abc import Mapping, Sequence
 from functools import cached_property
 
-from archgen.diagnostics.suggestions import NAMES_HELP, find_closest
+from archgen.diagnostics import NAMES_HELP, find_closest
 from archgen.frozen import dataclass, field, replace
 from archgen.grouping import group_pairs
 from archgen.model import flow_graph

@@ -14,8 +14,7 @@ import re
 from collections.abc import Iterator
 from typing import Literal
 
-from archgen.diagnostics.source_span import Span
-from archgen.diagnostics.suggestions import find_closest
+from archgen.diagnostics import Span, find_closest
 from archgen.frozen import dataclass
 
 SELECTOR_KEYS = (

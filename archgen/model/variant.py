@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from archgen.diagnostics.source_span import NO_SPAN, Span
+from archgen.diagnostics import NO_SPAN, Span
 from archgen.frozen import dataclass, field
 
 BASE_NAME = "base"

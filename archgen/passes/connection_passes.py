@@ -8,8 +8,8 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
+from archgen.diagnostics import Span
 from archgen.diagnostics.element_origins import TreePath
-from archgen.diagnostics.source_span import Span
 from archgen.frozen import NamedTuple
 from archgen.link import mapping_values
 from archgen.link.port_sources import PortKey, PortSource

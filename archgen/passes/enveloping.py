@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterator
 from itertools import chain, count
 
+from archgen.diagnostics import Span
 from archgen.diagnostics.element_origins import TreePath
-from archgen.diagnostics.source_span import Span
 from archgen.link import mapping_values
 from archgen.model.generic_names import read_generic_name
 from archgen.model.port_media import flow_of_port, is_physical, uses_ros

@@ -9,7 +9,7 @@ from collections.abc import Mapping, Sequence
 
 from archgen import derivation
 from archgen.derivation.ros_names import default_port_name
-from archgen.diagnostics.source_span import Span
+from archgen.diagnostics import Span
 from archgen.link import mapping_values
 from archgen.model.architecture import Architecture
 from archgen.model.node import Endpoint

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 
-from archgen.diagnostics.source_span import Span
+from archgen.diagnostics import Span
 from archgen.link import mapping_values
 from archgen.model.architecture import Architecture
 from archgen.model.step_connections import StepConnection, StepConnections

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Collection, Mapping
 
 from archgen import derivation
-from archgen.diagnostics.source_span import Span
+from archgen.diagnostics import Span
 from archgen.link import mapping_values
 from archgen.link.declare.handed_parameters import HandedParameters
 from archgen.link.open_shells import OpenShells

@@ -6,7 +6,7 @@ from functools import cached_property
 
 from archgen import compose, link
 from archgen.compose import ExpandedProject
-from archgen.diagnostics.diagnostic import Diagnostic
+from archgen.diagnostics import Diagnostic
 from archgen.frozen import dataclass
 from archgen.link import element_outline, mapping_values
 from archgen.link.automatic_connections import join_ports

@@ -8,10 +8,8 @@ from __future__ import annotations
 import re
 from collections.abc import Iterable, Iterator, Mapping
 
-from archgen.diagnostics.diagnostic import Diagnostic, Label
+from archgen.diagnostics import Diagnostic, Label, SourceTexts, Span, make_visible
 from archgen.diagnostics.element_origins import Origin, TreePath
-from archgen.diagnostics.safe_text import make_visible
-from archgen.diagnostics.source_span import SourceTexts, Span
 from archgen.frozen import replace
 from archgen.language.language_tables import SECTION_KINDS
 from archgen.model.made_elements import ElementPlace, MadeElement

@@ -4,9 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 
-from archgen.diagnostics.diagnostic import Diagnostic
+from archgen.diagnostics import Diagnostic, did_you_mean
 from archgen.diagnostics.element_origins import Origin, TreePath
-from archgen.diagnostics.suggestions import did_you_mean
 from archgen.frozen import dataclass
 from archgen.model.known_interfaces import Interfaces
 from archgen.passes.connection_passes import CONNECT_COMPONENTS, CONNECT_PORTS, CONNECT_TYPES

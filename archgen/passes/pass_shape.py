@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass, field
 
-from archgen.diagnostics.diagnostic import Diagnostic
+from archgen.diagnostics import Diagnostic
 from archgen.frozen import dataclass as frozen_dataclass
 from archgen.model.known_interfaces import Interfaces
 from archgen.passes.linked_tree import LinkedTree

@@ -8,8 +8,8 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 
+from archgen.diagnostics import Span
 from archgen.diagnostics.element_origins import Origin, TreePath
-from archgen.diagnostics.source_span import Span
 from archgen.syntax.yaml_tree import (
     MappingEntry,
     MappingNode,

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
+from archgen.diagnostics import Span
 from archgen.diagnostics.element_origins import Origin, TreePath
-from archgen.diagnostics.source_span import Span
 from archgen.passes.project_tree import ProjectTree, have_same_content, walk_tree
 from archgen.syntax.yaml_tree import MappingEntry, MappingNode, ScalarNode, SequenceNode, YamlNode, copy_node
 

@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from archgen.compose.expanded_project import Expansion
+from archgen.diagnostics import SourceTexts, Span
 from archgen.diagnostics.element_origins import TreePath
-from archgen.diagnostics.source_span import SourceTexts, Span
 from archgen.link import mapping_values
 from archgen.passes.pass_shape import Pass, PassWork
 from archgen.passes.project_tree import list_paths

@@ -1,8 +1,7 @@
 """For importers: what they return, reading files within limits, ids and titles, trees of YAML and XML with their places."""
 
 from archgen.conformance.observed_robot import ObservedEndpoint, ObservedNode, ObservedRobot, RecordedTopic
-from archgen.diagnostics.source_span import NO_SPAN, SourceTexts, Span
-from archgen.diagnostics.suggestions import find_closest
+from archgen.diagnostics import NO_SPAN, SourceTexts, Span, find_closest
 from archgen.importers.foreign_files import (
     ARCHIVE_DAMAGE,
     ZIP_BEGINNING,

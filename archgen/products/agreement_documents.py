@@ -7,7 +7,7 @@ from datetime import date
 from pathlib import Path
 from typing import Literal
 
-from archgen.diagnostics.suggestions import did_you_mean
+from archgen.diagnostics import did_you_mean
 from archgen.emit import file_tree
 from archgen.emit.picture import Picture
 from archgen.frozen import replace

@@ -12,8 +12,7 @@ from archgen.compare import Change, Comparison
 from archgen.compare.agreements import AgreementJudge
 from archgen.compare.breaking_changes import sort_breaks_first
 from archgen.compare.comparison import PartnerBreak
-from archgen.diagnostics.common_wording import join_words, keep_first, shorten_hash
-from archgen.diagnostics.diagnostic import Severity
+from archgen.diagnostics import Severity, join_words, keep_first, shorten_hash
 from archgen.frozen import dataclass, replace
 from archgen.git import GitError, find_repository
 from archgen.git.repository_lookup import look_up_commit

@@ -5,8 +5,7 @@ from __future__ import annotations
 from collections.abc import Collection, Mapping, Sequence
 from typing import Literal
 
-from archgen.diagnostics.diagnostic import Diagnostic
-from archgen.diagnostics.suggestions import did_you_mean
+from archgen.diagnostics import Diagnostic, did_you_mean
 from archgen.emit import backend_manifests, file_tree
 from archgen.emit.backend_manifests import CALLED_EMITTERS, Backend
 from archgen.pipeline import CheckedProject

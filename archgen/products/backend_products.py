@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from typing import Any
 
-from archgen.diagnostics.diagnostic import Diagnostic
+from archgen.diagnostics import Diagnostic
 from archgen.emit import file_tree
 from archgen.emit.backend_manifests import Backend
 from archgen.pipeline import CheckedProject

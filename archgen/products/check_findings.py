@@ -12,7 +12,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from archgen import pipeline, project
-from archgen.diagnostics.diagnostic import Diagnostic, Rule, Severity, settle_diagnostics
+from archgen.diagnostics import Diagnostic, Rule, Severity, settle_diagnostics
 from archgen.diagnostics.finding_identity import BaselineEntry, IdRenamer, identify_finding, match_findings
 from archgen.frozen import dataclass, replace
 from archgen.pipeline import CheckedProject, VersionCache, index_all_rules

@@ -16,8 +16,7 @@ from archgen.compare.change_listing import find_changes
 from archgen.compare.compare_versions import compare_versions
 from archgen.compare.match_elements import match_elements
 from archgen.compare.review_facts import Author, ReviewFacts, name_author
-from archgen.diagnostics.common_wording import shorten_hash
-from archgen.diagnostics.diagnostic import Severity
+from archgen.diagnostics import Severity, shorten_hash
 from archgen.diagnostics.rule_options import format_percentage
 from archgen.frozen import dataclass, replace
 from archgen.git.commit_log import find_last_commit, find_own_mail, list_author_mails

@@ -9,7 +9,7 @@ import shlex
 from typing import TYPE_CHECKING
 
 from archgen.compare import Comparison
-from archgen.diagnostics.common_wording import shorten_hash
+from archgen.diagnostics import shorten_hash
 from archgen.frozen import replace
 from archgen.products.compared_versions import WORKING_TREE_NAME, ProjectVersion
 from archgen.products.output_options import OutputOptions

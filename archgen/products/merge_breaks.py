@@ -10,9 +10,7 @@ from archgen.compare.change_spans import find_change_span, find_old_file
 from archgen.compare.match_elements import match_elements
 from archgen.compare.matched_ids import MatchedIds
 from archgen.compare.review_facts import ReviewFacts
-from archgen.diagnostics.common_wording import join_words
-from archgen.diagnostics.diagnostic import Diagnostic
-from archgen.diagnostics.source_span import NO_SPAN, Span
+from archgen.diagnostics import NO_SPAN, Diagnostic, Span, join_words
 from archgen.edit.refactoring.followed_branches import follow_branches
 from archgen.findings.rule_table import BREAKING_CHANGE
 from archgen.frozen import replace

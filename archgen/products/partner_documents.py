@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import Literal
 
-from archgen.diagnostics.safe_text import format_json
+from archgen.diagnostics import format_json
 from archgen.emit.data.partner_json import impact_to_json, tasks_to_json
 from archgen.emit.terminal.outline_text import write_outline_lines
 from archgen.model.architecture import Partner

@@ -6,7 +6,7 @@ from collections.abc import Collection, Mapping, Sequence
 from typing import TYPE_CHECKING
 
 from archgen import git
-from archgen.diagnostics.common_wording import shorten_hash
+from archgen.diagnostics import shorten_hash
 from archgen.frozen import dataclass, replace
 from archgen.git.project_revision import find_revision, find_revision_date
 from archgen.model import selector_evaluation

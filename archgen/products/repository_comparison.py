@@ -8,7 +8,7 @@ from pathlib import Path
 
 from archgen import git
 from archgen.compare.review_facts import ReviewFacts
-from archgen.diagnostics.common_wording import join_words
+from archgen.diagnostics import join_words
 from archgen.frozen import NamedTuple
 from archgen.pipeline import CheckedProject
 from archgen.products.compared_versions import ProjectVersion, compare_named_versions, read_versions, split_range

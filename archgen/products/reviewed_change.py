@@ -12,8 +12,7 @@ from pathlib import Path, PurePosixPath
 from archgen import git, project
 from archgen.compare import Comparison
 from archgen.compare.review_facts import ReviewFacts
-from archgen.diagnostics.common_wording import shorten_hash
-from archgen.diagnostics.diagnostic import Diagnostic
+from archgen.diagnostics import Diagnostic, shorten_hash
 from archgen.frozen import NamedTuple, dataclass, field
 from archgen.git.project_revision import differs_from_head
 from archgen.git.repository_lookup import look_up_commit

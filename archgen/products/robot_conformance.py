@@ -18,8 +18,7 @@ from archgen.conformance.seen_record import (
     replace_robots,
     write_record,
 )
-from archgen.diagnostics.common_wording import join_words
-from archgen.diagnostics.diagnostic import Diagnostic, settle_diagnostics
+from archgen.diagnostics import Diagnostic, join_words, settle_diagnostics
 from archgen.edit.adopted_remedies import Adoption, FindingNames, plan_adoption
 from archgen.edit.import_source import list_stale_slices
 from archgen.findings import ignore_comments

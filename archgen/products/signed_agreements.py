@@ -8,7 +8,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from pathlib import Path
 
-from archgen.diagnostics.common_wording import shorten_hash
+from archgen.diagnostics import shorten_hash
 from archgen.frozen import replace
 from archgen.git import GitError
 from archgen.git.tag_list import list_tags_below

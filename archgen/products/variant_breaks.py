@@ -5,8 +5,7 @@ from __future__ import annotations
 from archgen.compare import Change, Comparison
 from archgen.compare.breaking_changes import sort_breaks_first
 from archgen.compare.comparison import PartnerBreak
-from archgen.diagnostics.common_wording import join_words
-from archgen.diagnostics.diagnostic import Severity
+from archgen.diagnostics import Severity, join_words
 from archgen.frozen import replace
 
 _ChangeIdentity = tuple[str, str, str, str | None, str | None, str]

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from archgen.compare.change_listing import list_changes
-from archgen.diagnostics.diagnostic import phrase_severity_counts
+from archgen.diagnostics import phrase_severity_counts
 from archgen.model.variant import BASE_NAME
 from archgen.pipeline import CheckedProject, keep_variant_findings, stand_in_variants
 from archgen.products.compared_versions import make_comparison_input

@@ -10,8 +10,7 @@ import tempfile
 from pathlib import Path, PurePosixPath
 
 from archgen.conformance.robot_comparison import ComparedPart
-from archgen.diagnostics.diagnostic import Diagnostic
-from archgen.diagnostics.source_span import Span
+from archgen.diagnostics import Diagnostic, Span
 from archgen.frozen import dataclass, replace
 from archgen.git.object_reader import GitObjects
 from archgen.importers.foreign_import import ForeignFileError

@@ -7,9 +7,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 
-from archgen.diagnostics.diagnostic import Diagnostic, Severity
-from archgen.diagnostics.source_span import NO_SPAN
-from archgen.diagnostics.suggestions import did_you_mean
+from archgen.diagnostics import NO_SPAN, Diagnostic, Severity, did_you_mean
 from archgen.emit.backend_manifests import Backend
 from archgen.emit.file_tree import OutputError, refuse_file
 from archgen.emit.workspace import workspace_writing

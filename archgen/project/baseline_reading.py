@@ -6,9 +6,8 @@ import re
 from collections.abc import Iterable, Iterator, Mapping
 from pathlib import Path
 
-from archgen.diagnostics.diagnostic import Diagnostic, Rule, name_rule
+from archgen.diagnostics import Diagnostic, Rule, did_you_mean, name_rule
 from archgen.diagnostics.finding_identity import BaselineEntry
-from archgen.diagnostics.suggestions import did_you_mean
 from archgen.syntax import project_files, yaml_parser
 from archgen.syntax.folder_files import FolderFiles
 from archgen.syntax.yaml_tree import MappingEntry, MappingNode, ScalarNode, SequenceNode, YamlNode

@@ -14,9 +14,7 @@ from functools import cache, lru_cache
 from types import MappingProxyType
 
 from archgen import resources
-from archgen.diagnostics.common_wording import join_words
-from archgen.diagnostics.diagnostic import Diagnostic, Severity
-from archgen.diagnostics.source_span import Span
+from archgen.diagnostics import Diagnostic, Severity, Span, join_words
 from archgen.frozen import NamedTuple, dataclass
 from archgen.language.key_paths import SLICE
 from archgen.language.language_tables import KEYS, SECTION_KINDS

@@ -10,9 +10,7 @@ import csv
 import io
 from collections.abc import Iterator, Sequence
 
-from archgen.diagnostics.diagnostic import Diagnostic
-from archgen.diagnostics.source_span import Span
-from archgen.diagnostics.suggestions import did_you_mean
+from archgen.diagnostics import Diagnostic, Span, did_you_mean
 from archgen.model.quantity import Quantity, parse_quantity
 from archgen.syntax import yaml_parser
 from archgen.syntax.yaml_tree import MappingNode, ScalarNode

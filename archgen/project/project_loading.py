@@ -9,9 +9,8 @@ import re
 from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
 
-from archgen.diagnostics.diagnostic import Diagnostic, Severity, name_rule
+from archgen.diagnostics import Diagnostic, Severity, SourceTexts, Span, name_rule
 from archgen.diagnostics.rule_options import WrittenOption
-from archgen.diagnostics.source_span import SourceTexts, Span
 from archgen.frozen import NamedTuple, dataclass, field, replace
 from archgen.project.library_reading import (
     SHIPPED_ID,

@@ -10,8 +10,7 @@ from bisect import bisect_left
 from collections import Counter
 from collections.abc import Iterator
 
-from archgen.diagnostics.diagnostic import Diagnostic
-from archgen.diagnostics.source_span import SourceTexts, Span
+from archgen.diagnostics import Diagnostic, SourceTexts, Span
 from archgen.frozen import dataclass, field, replace
 from archgen.model.agreed_terms import is_signature_file
 from archgen.model.project_settings import is_agreement_file

@@ -6,8 +6,7 @@ import posixpath
 import re
 from collections.abc import Iterable, Iterator
 
-from archgen.diagnostics.diagnostic import Diagnostic, Severity
-from archgen.diagnostics.suggestions import find_closest
+from archgen.diagnostics import Diagnostic, Severity, find_closest
 from archgen.language.language_tables import COMMON_SECTIONS, SECTION_KINDS
 from archgen.project.project_search import PROJECT_FILE
 from archgen.project.slice_parsing import ReadingState, find_written_keys, parse_file

@@ -8,10 +8,7 @@ from collections.abc import Iterator
 from itertools import islice
 from pathlib import PurePosixPath
 
-from archgen.diagnostics.common_wording import join_first
-from archgen.diagnostics.diagnostic import Diagnostic, Severity
-from archgen.diagnostics.source_span import Span
-from archgen.diagnostics.suggestions import find_closest
+from archgen.diagnostics import Diagnostic, Severity, Span, find_closest, join_first
 from archgen.language.language_tables import COMMON_SECTIONS
 from archgen.model.agreed_terms import SIGNATURE_FOLDER
 from archgen.model.project_settings import agreement_file

@@ -6,9 +6,7 @@ import posixpath
 import re
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 
-from archgen.diagnostics.common_wording import join_words
-from archgen.diagnostics.diagnostic import Diagnostic, Severity
-from archgen.diagnostics.source_span import Span
+from archgen.diagnostics import Diagnostic, Severity, Span, join_words
 from archgen.frozen import replace
 from archgen.language.language_tables import COMMON_SECTIONS, SECTION_KINDS
 from archgen.project.project_search import PROJECT_FILE

@@ -9,8 +9,7 @@ import re
 from collections import deque
 from typing import TYPE_CHECKING
 
-from archgen.diagnostics.diagnostic import Diagnostic, diagnose_repetition
-from archgen.diagnostics.suggestions import did_you_mean
+from archgen.diagnostics import Diagnostic, diagnose_repetition, did_you_mean
 from archgen.frozen import NamedTuple
 from archgen.syntax.yaml_tree import MappingEntry, MappingNode, ScalarNode, SequenceNode, list_entries
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-from archgen.diagnostics.suggestions import find_closest
+from archgen.diagnostics import find_closest
 from archgen.language.language_tables import OTHER_WORDS, SECTION_KINDS
 from archgen.schema.language_schema import TELLING_NOTHING, list_keys, load_schema, resolve_part
 from archgen.schema.schema_wording import add_article

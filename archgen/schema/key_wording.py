@@ -5,9 +5,7 @@ from __future__ import annotations
 import re
 from typing import TYPE_CHECKING, Any
 
-from archgen.diagnostics.common_wording import join_words
-from archgen.diagnostics.diagnostic import Diagnostic
-from archgen.diagnostics.suggestions import did_you_shorten, find_closest
+from archgen.diagnostics import Diagnostic, did_you_shorten, find_closest, join_words
 from archgen.schema import key_places
 from archgen.schema.schema_wording import (
     ErrorPlace,

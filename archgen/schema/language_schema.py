@@ -8,7 +8,7 @@ from itertools import islice
 from typing import TYPE_CHECKING, Any
 
 from archgen import resources
-from archgen.diagnostics.suggestions import find_closest
+from archgen.diagnostics import find_closest
 from archgen.language.language_tables import SECTION_KINDS
 from archgen.syntax.yaml_tree import MappingNode, ScalarNode, SequenceNode
 

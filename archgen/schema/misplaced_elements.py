@@ -8,8 +8,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-from archgen.diagnostics.diagnostic import Diagnostic
-from archgen.diagnostics.suggestions import find_closest
+from archgen.diagnostics import Diagnostic, find_closest
 from archgen.schema import key_places, key_wording
 from archgen.schema.language_schema import load_schema, resolve_part
 from archgen.schema.schema_wording import add_article, element_of_path

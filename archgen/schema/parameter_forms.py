@@ -7,8 +7,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from archgen.diagnostics.diagnostic import Diagnostic, diagnose_repetition
-from archgen.diagnostics.suggestions import did_you_mean
+from archgen.diagnostics import Diagnostic, diagnose_repetition, did_you_mean
 from archgen.model.parameter import MAX_NAME_LENGTH
 from archgen.schema.component_sugar import list_component_bodies
 from archgen.syntax.yaml_tree import MappingEntry, MappingNode, ScalarNode, SequenceNode
@@ -16,7 +15,7 @@ from archgen.syntax.yaml_tree import MappingEntry, MappingNode, ScalarNode, Sequ
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-    from archgen.diagnostics.source_span import Span
+    from archgen.diagnostics import Span
 
 DECLARATION_KEYS = (
     *("type", "value", "unit", "range", "choices", "description", "read_only", "visibility", "from", "hints"),

@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from typing import Any
 
-from archgen.diagnostics.suggestions import find_closest
+from archgen.diagnostics import find_closest
 from archgen.model import quantity
 
 # A sign, digits with a point or a comma, and whatever follows them as the unit.

@@ -14,8 +14,7 @@ from typing import TYPE_CHECKING, Any
 
 import jsonschema_rs
 
-from archgen.diagnostics.diagnostic import Diagnostic, Label
-from archgen.diagnostics.source_span import NO_SPAN
+from archgen.diagnostics import NO_SPAN, Diagnostic, Label
 from archgen.language.language_tables import SECTION_KINDS
 from archgen.schema.language_schema import load_schema
 from archgen.schema.parameter_forms import DECLARATION_KEYS

@@ -12,11 +12,7 @@ import shlex
 from collections.abc import Sequence
 from typing import Any
 
-from archgen.diagnostics import odd_characters
-from archgen.diagnostics.common_wording import join_words
-from archgen.diagnostics.diagnostic import AskedName, Diagnostic
-from archgen.diagnostics.source_span import Span
-from archgen.diagnostics.suggestions import did_you_mean, did_you_shorten
+from archgen.diagnostics import AskedName, Diagnostic, Span, did_you_mean, did_you_shorten, join_words, odd_characters
 from archgen.frozen import NamedTuple
 from archgen.language.key_paths import find_part
 from archgen.language.language_tables import OFFERS, SECTION_KINDS

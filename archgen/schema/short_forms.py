@@ -9,7 +9,7 @@ from __future__ import annotations
 import unicodedata
 from typing import TYPE_CHECKING
 
-from archgen.diagnostics.diagnostic import Diagnostic, diagnose_repetition
+from archgen.diagnostics import Diagnostic, diagnose_repetition
 from archgen.frozen import dataclass, field, replace
 from archgen.language.key_paths import SLICE
 from archgen.language.language_tables import DATA_PARTS, ENTRIES, KEYS, LISTED_PARTS, SHORT_KEYS

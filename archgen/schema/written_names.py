@@ -9,7 +9,7 @@ from collections.abc import Iterator, Mapping
 from types import MappingProxyType
 from typing import Literal
 
-from archgen.diagnostics.source_span import Span
+from archgen.diagnostics import Span
 from archgen.frozen import NamedTuple
 from archgen.language.key_paths import OWN_DATA, SLICE, find_inner_part
 from archgen.language.language_tables import ENTRIES, KEYS, OFFERS, SECTION_KINDS

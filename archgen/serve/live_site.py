@@ -17,8 +17,7 @@ from functools import cached_property
 from pathlib import Path
 from typing import Any
 
-from archgen.diagnostics.diagnostic import Severity, sort_gravest_first
-from archgen.diagnostics.safe_text import make_visible
+from archgen.diagnostics import Severity, make_visible, sort_gravest_first
 from archgen.emit import site
 from archgen.emit.site import page_pictures
 from archgen.emit.site.chapter_html import ChapterWriter

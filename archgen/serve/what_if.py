@@ -7,7 +7,7 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from fractions import Fraction
 from typing import Any
 
-from archgen.diagnostics.safe_text import make_visible
+from archgen.diagnostics import make_visible
 from archgen.emit.data import timing_json
 from archgen.emit.site.html_text import shorten_figures
 from archgen.link.process_overrides import OverrideError

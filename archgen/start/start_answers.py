@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 from typing import Literal
 
-from archgen.diagnostics.safe_text import replace_surrogates
+from archgen.diagnostics import replace_surrogates
 from archgen.emit.codeowners_file import REVIEWER_HANDLE
 from archgen.frozen import dataclass, replace
 from archgen.model import element_ids

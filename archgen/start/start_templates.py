@@ -11,8 +11,7 @@ import jinja2
 import yaml as pyyaml
 
 from archgen import resources
-from archgen.diagnostics.diagnostic import Severity
-from archgen.diagnostics.safe_text import make_visible
+from archgen.diagnostics import Severity, make_visible
 from archgen.emit.markdown.inert_text import escape_markdown
 from archgen.start.start_answers import EXAMPLE_GROUPS, GroupAnswer, StartAnswers
 from archgen.syntax import yaml_writer

@@ -18,7 +18,7 @@ from ruamel.yaml.representer import RoundTripRepresenter
 from ruamel.yaml.scalarstring import DoubleQuotedScalarString, FoldedScalarString, LiteralScalarString
 from ruamel.yaml.tokens import CommentToken
 
-from archgen.diagnostics.safe_text import replace_surrogates
+from archgen.diagnostics import replace_surrogates
 from archgen.syntax import yaml_writer
 
 _MAX_WIDTH = 110

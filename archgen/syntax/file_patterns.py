@@ -11,7 +11,7 @@ from itertools import compress
 from pathlib import PurePosixPath
 from typing import TYPE_CHECKING
 
-from archgen.diagnostics.natural_order import order_naturally
+from archgen.diagnostics import order_naturally
 from archgen.frozen import NamedTuple
 
 if TYPE_CHECKING:

@@ -8,9 +8,7 @@ from __future__ import annotations
 
 import re
 
-from archgen.diagnostics.diagnostic import Diagnostic, Label
-from archgen.diagnostics.source_span import Span
-from archgen.diagnostics.suggestions import did_you_mean
+from archgen.diagnostics import Diagnostic, Label, Span, did_you_mean
 from archgen.frozen import NamedTuple, dataclass, field
 from archgen.model.known_interfaces import Interface, InterfaceConstant, InterfaceField
 from archgen.syntax.interface_literals import (

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import re
 
-from archgen.diagnostics.suggestions import did_you_mean
+from archgen.diagnostics import did_you_mean
 from archgen.frozen import NamedTuple, dataclass
 
 FLOAT_TYPES = frozenset({"float32", "float64"})

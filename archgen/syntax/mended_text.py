@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Callable, Iterable, Sequence
 
-from archgen.diagnostics.diagnostic import Diagnostic
+from archgen.diagnostics import Diagnostic
 from archgen.frozen import NamedTuple
 
 _MAX_CUTS = 12

@@ -16,8 +16,7 @@ from collections.abc import Iterator, Mapping
 from pathlib import Path, PurePosixPath
 from typing import Protocol
 
-from archgen.diagnostics.diagnostic import Diagnostic
-from archgen.diagnostics.source_span import Span
+from archgen.diagnostics import Diagnostic, Span
 from archgen.frozen import NamedTuple, dataclass
 
 MAX_BYTES = 16 * 1024 * 1024

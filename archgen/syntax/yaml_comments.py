@@ -6,8 +6,7 @@ import re
 from bisect import bisect_right
 from typing import TYPE_CHECKING
 
-from archgen.diagnostics.diagnostic import Diagnostic, Label, name_rule
-from archgen.diagnostics.source_span import Span
+from archgen.diagnostics import Diagnostic, Label, Span, name_rule
 from archgen.syntax.yaml_tree import IgnoreComment
 
 if TYPE_CHECKING:

@@ -7,9 +7,7 @@ from __future__ import annotations
 
 import re
 
-from archgen.diagnostics import odd_characters
-from archgen.diagnostics.diagnostic import Diagnostic, Label, diagnose_repetition
-from archgen.diagnostics.source_span import Span
+from archgen.diagnostics import Diagnostic, Label, Span, diagnose_repetition, odd_characters
 from archgen.frozen import NamedTuple
 from archgen.language.language_tables import KEYS
 

@@ -11,8 +11,7 @@ from typing import TYPE_CHECKING, Any
 
 import yaml
 
-from archgen.diagnostics.diagnostic import Diagnostic
-from archgen.diagnostics.source_span import Span
+from archgen.diagnostics import Diagnostic, Span
 from archgen.frozen import dataclass, field
 from archgen.syntax import yaml_comments, yaml_errors
 from archgen.syntax.yaml_tree import (

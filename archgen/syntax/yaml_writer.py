@@ -8,7 +8,7 @@ import json
 import re
 from collections.abc import Iterator, Mapping, Sequence
 
-from archgen.diagnostics.safe_text import make_visible, replace_surrogates
+from archgen.diagnostics import make_visible, replace_surrogates
 
 ElementPath = tuple[str | int, ...]
 

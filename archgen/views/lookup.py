@@ -6,7 +6,7 @@ from collections import defaultdict
 from collections.abc import Iterable, Iterator, Mapping
 from typing import TypeVar
 
-from archgen.diagnostics.diagnostic import Diagnostic
+from archgen.diagnostics import Diagnostic
 from archgen.frozen import dataclass, field, replace
 from archgen.grouping import group_pairs
 from archgen.model.architecture import Architecture, Chain

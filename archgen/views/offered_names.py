@@ -8,7 +8,7 @@ from collections.abc import Iterable, Iterator, Mapping
 from itertools import chain
 from typing import Protocol
 
-from archgen.diagnostics.safe_text import make_visible
+from archgen.diagnostics import make_visible
 from archgen.frozen import NamedTuple
 from archgen.language.language_tables import SECTION_KINDS
 from archgen.model.architecture import Architecture

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Mapping
 
 from archgen.bringup.plan_shapes import DroppedWait, StartStep, Wait, WaitEnd, WaitReason
-from archgen.diagnostics.common_wording import join_first, join_words
+from archgen.diagnostics import join_first, join_words
 from archgen.frozen import dataclass
 from archgen.model.node import Endpoint, Node
 from archgen.model.quantity import Quantity

@@ -30,7 +30,7 @@ from archgen.compare.kinds.kind_spec import (
 from archgen.compare.normal_values import unordered_values
 from archgen.derivation.port_endpoints import flow_of_use
 from archgen.derivation.wire.wire_names import NodeNames
-from archgen.diagnostics.source_span import NO_SPAN, Span
+from archgen.diagnostics import NO_SPAN, Span
 from archgen.frozen import NamedTuple, fields
 from archgen.model.known_interfaces import Interface, InterfaceConstant, InterfaceField
 from archgen.model.message_types import ConceptualType

@@ -18,8 +18,7 @@ from archgen.compare.key_phrases import name_partner, shorten_text, tick_names
 from archgen.compare.matched_ids import MatchedIds
 from archgen.compare.review_facts import ReviewFacts
 from archgen.compare.version_pair import ElementKey, VersionPair
-from archgen.diagnostics.common_wording import join_words
-from archgen.diagnostics.diagnostic import Severity
+from archgen.diagnostics import Severity, join_words
 from archgen.frozen import NamedTuple
 from archgen.model.architecture import Architecture
 from archgen.model.node import Endpoint

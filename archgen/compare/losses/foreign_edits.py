@@ -13,8 +13,7 @@ from archgen.compare.comparison import Change
 from archgen.compare.losses.change_context import ChangeContext, PartnerLoss
 from archgen.compare.matched_ids import MatchedIds
 from archgen.compare.version_pair import ElementKey
-from archgen.diagnostics.common_wording import join_words
-from archgen.diagnostics.diagnostic import Severity
+from archgen.diagnostics import Severity, join_words
 from archgen.frozen import NamedTuple
 from archgen.model.architecture import Architecture
 from archgen.model.project_settings import agreement_file

@@ -9,7 +9,7 @@ from collections.abc import Iterable, Iterator, Mapping
 
 from archgen.compare.losses.change_context import ChangeContext, PartnerLoss, tick_sorted_names
 from archgen.compare.version_pair import ElementKey
-from archgen.diagnostics.common_wording import join_words
+from archgen.diagnostics import join_words
 from archgen.frozen import NamedTuple, replace
 from archgen.grouping import group_pairs
 from archgen.model.architecture import Architecture, UseCase

@@ -18,7 +18,7 @@ from archgen.compare.losses.change_context import WRITING_USES, ChangeContext, P
 from archgen.compare.losses.lost_connections import find_component_renames
 from archgen.compare.version_pair import ElementKey
 from archgen.derivation.wire.running_state import domain_of
-from archgen.diagnostics.common_wording import join_words
+from archgen.diagnostics import join_words
 from archgen.frozen import NamedTuple
 from archgen.model.architecture import Architecture
 from archgen.model.node import Clock, Endpoint, FlowKind

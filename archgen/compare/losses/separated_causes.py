@@ -12,8 +12,7 @@ from archgen.compare.losses.change_context import ChangeContext, tick_name
 from archgen.compare.losses.timing_causes import TimingCauses
 from archgen.compare.timing_pair import can_affect_timing
 from archgen.derivation import derive_low_level
-from archgen.diagnostics.common_wording import fit_lines, join_words
-from archgen.diagnostics.source_span import NO_SPAN
+from archgen.diagnostics import NO_SPAN, fit_lines, join_words
 from archgen.frozen import NamedTuple, dataclass, replace
 from archgen.grouping import group_pairs
 from archgen.model.architecture import Architecture, PortEdge

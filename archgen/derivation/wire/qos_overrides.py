@@ -11,8 +11,7 @@ from itertools import chain
 from typing import Any
 
 from archgen.derivation.wire.launch_words import list_parameter_words
-from archgen.diagnostics.common_wording import join_words
-from archgen.diagnostics.source_span import Span
+from archgen.diagnostics import Span, join_words
 from archgen.frozen import dataclass, replace
 from archgen.model.architecture import Architecture
 from archgen.model.node import Endpoint, Evidence, Node, OverrideEffect, UseKind

@@ -14,7 +14,7 @@ from operator import attrgetter
 from archgen.derivation.derived_parts import DerivedParts
 from archgen.derivation.wire.launch_words import list_parameter_words
 from archgen.derivation.wire.qos_overrides import QosOverride, list_overrides, override_qos
-from archgen.diagnostics.source_span import NO_SPAN, Span
+from archgen.diagnostics import NO_SPAN, Span
 from archgen.frozen import dataclass, replace
 from archgen.model.architecture import Architecture
 from archgen.model.deployment import Container

@@ -13,7 +13,7 @@ from types import MappingProxyType
 from typing import Literal
 
 from archgen.derivation.wire.launch_words import JOINT, list_rule_words
-from archgen.diagnostics.source_span import NO_SPAN, Span
+from archgen.diagnostics import NO_SPAN, Span
 from archgen.frozen import NamedTuple, dataclass, replace
 from archgen.model.node import Evidence, FlowKind, Node, PortUse
 from archgen.model.ros_distro import PAST_DISTROS, is_ros_1

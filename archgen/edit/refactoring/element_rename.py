@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from archgen.checking.reference_index import PATH_KINDS, Element
-from archgen.diagnostics.suggestions import did_you_mean
+from archgen.diagnostics import did_you_mean
 from archgen.edit.element_edit import EditRefusedError
 from archgen.edit.refactoring.judged_version import JudgedVersion
 from archgen.edit.refactoring.kept_names import KEEP_NONE, KeptNames

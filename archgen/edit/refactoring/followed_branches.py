@@ -12,7 +12,7 @@ from archgen.checking.reference_index import Element
 from archgen.compare.architecture_version import ArchitectureVersion
 from archgen.compare.kinds import ELEMENT_KINDS
 from archgen.compare.match_elements import match_elements
-from archgen.diagnostics.source_span import Span
+from archgen.diagnostics import Span
 from archgen.edit.element_edit import EditRefusedError, FileEdit
 from archgen.edit.refactoring.element_move import plan_move
 from archgen.edit.refactoring.element_rename import plan_rename

@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from itertools import product
 
 from archgen.checking.reference_index import Element
-from archgen.diagnostics.source_span import Span
+from archgen.diagnostics import Span
 from archgen.edit import edit_proof
 from archgen.edit.edit_proof import NewElement
 from archgen.edit.element_edit import (

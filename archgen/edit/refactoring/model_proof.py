@@ -14,7 +14,7 @@ from archgen.compare.element_listing import list_elements
 from archgen.compare.kinds import ELEMENT_KINDS
 from archgen.compare.matched_ids import MatchedIds
 from archgen.compare.normal_values import ElementTitle
-from archgen.diagnostics.diagnostic import Diagnostic
+from archgen.diagnostics import Diagnostic
 from archgen.edit.refactoring.renamed_ids import RenamedIds
 from archgen.frozen import NamedTuple
 from archgen.grouping import group_pairs

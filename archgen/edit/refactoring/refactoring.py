@@ -9,7 +9,7 @@ import re
 from collections.abc import Callable, Iterator, Sequence
 
 from archgen.checking.reference_index import PATH_KINDS, Element, WrittenName
-from archgen.diagnostics.source_span import Span
+from archgen.diagnostics import Span
 from archgen.diagnostics.suggested_fixes import TextEdit
 from archgen.edit.element_edit import EditRefusedError, FileEdit, read_editable
 from archgen.edit.refactoring.judged_version import JudgedVersion, edit_files, judge_edited

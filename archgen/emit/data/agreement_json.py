@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from typing import Any
 
 from archgen.bringup.plan_shapes import StartStep
-from archgen.diagnostics.safe_text import format_json
+from archgen.diagnostics import format_json
 from archgen.model.agreed_terms import find_agreement
 from archgen.views.agreement.agreement_content import AgreementContent
 from archgen.views.agreement.general_sections import list_start_steps, list_variant_differences

@@ -5,8 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 from typing import TYPE_CHECKING, Any
 
-from archgen.diagnostics.diagnostic import Rule
-from archgen.diagnostics.safe_text import format_json
+from archgen.diagnostics import Rule, format_json
 from archgen.findings.rule_pages import read_rule_page
 from archgen.views.search.search_entry import SearchEntry
 

@@ -17,7 +17,7 @@ from archgen.compare.comparison import (
 from archgen.compare.edits import list_edits
 from archgen.compare.figure_noise import FigureNoise
 from archgen.compare.type_edits import TypeKey, trace_origins
-from archgen.diagnostics.safe_text import format_json
+from archgen.diagnostics import format_json
 from archgen.emit.data.findings_data import finding_to_json
 from archgen.emit.data.timing_json import duration_to_json, quantity_to_json
 from archgen.model.node import Qos

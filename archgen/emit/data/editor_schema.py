@@ -11,7 +11,7 @@ import re
 from collections.abc import Iterator, Mapping
 from typing import Any
 
-from archgen.diagnostics.common_wording import join_words
+from archgen.diagnostics import join_words
 from archgen.language.language_tables import OFFERS, SECTION_KINDS
 from archgen.views.offered_names import OfferedName, OfferedNames, keep_plain_names
 

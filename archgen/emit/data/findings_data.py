@@ -6,9 +6,7 @@ import posixpath
 from collections.abc import Iterable, Iterator
 from typing import Any
 
-from archgen.diagnostics.diagnostic import Diagnostic, Severity, count_by_severity
-from archgen.diagnostics.safe_text import format_json, make_visible
-from archgen.diagnostics.source_span import SourceTexts, Span
+from archgen.diagnostics import Diagnostic, Severity, SourceTexts, Span, count_by_severity, format_json, make_visible
 from archgen.diagnostics.suggested_fixes import suggest_fix
 from archgen.findings.variant_findings import phrase_absence
 

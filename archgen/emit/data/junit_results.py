@@ -12,9 +12,7 @@ from collections import Counter
 from collections.abc import Iterable, Iterator, Sequence
 from itertools import groupby
 
-from archgen.diagnostics.diagnostic import Diagnostic, Severity
-from archgen.diagnostics.safe_text import make_visible
-from archgen.diagnostics.source_span import SourceTexts
+from archgen.diagnostics import Diagnostic, Severity, SourceTexts, make_visible
 from archgen.emit.data.findings_data import path_in_repository
 from archgen.emit.terminal.findings_text import render_finding_text
 

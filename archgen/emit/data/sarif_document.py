@@ -12,10 +12,8 @@ from collections.abc import Iterable, Iterator, Mapping
 from typing import Any
 from urllib.parse import quote_from_bytes
 
-from archgen.diagnostics.diagnostic import Diagnostic, Label, Rule
+from archgen.diagnostics import Diagnostic, Label, Rule, SourceTexts, Span, format_json, make_visible
 from archgen.diagnostics.finding_identity import number_findings
-from archgen.diagnostics.safe_text import format_json, make_visible
-from archgen.diagnostics.source_span import SourceTexts, Span
 from archgen.diagnostics.suggested_fixes import suggest_fix
 from archgen.emit.data.findings_data import path_in_repository
 from archgen.findings import rule_pages

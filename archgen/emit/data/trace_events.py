@@ -11,7 +11,7 @@ from fractions import Fraction
 from itertools import pairwise
 from typing import Any
 
-from archgen.diagnostics.safe_text import make_visible
+from archgen.diagnostics import make_visible
 from archgen.simulation.schedule_log import LateSchedule, TrackSpan
 
 _STATE_WORDS = {"runs": "", "ready": "waits for a core", "awaits": "waits for", "uses": "uses"}

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from urllib.parse import quote
 
-from archgen.diagnostics.safe_text import make_visible
+from archgen.diagnostics import make_visible
 from archgen.emit.markdown.inert_text import escape_inert, make_code_span
 from archgen.frozen import dataclass
 from archgen.views.changes.change_wording import text_runs

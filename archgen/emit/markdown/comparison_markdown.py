@@ -9,8 +9,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from archgen.compare.edits import Edit
-from archgen.diagnostics.common_wording import join_words, keep_first
-from archgen.diagnostics.diagnostic import Diagnostic, Severity
+from archgen.diagnostics import Diagnostic, Severity, join_words, keep_first
 from archgen.emit.markdown.comment_sentences import (
     ElementNames,
     shorten_sentence_name,

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from archgen.diagnostics.safe_text import make_visible
+from archgen.diagnostics import make_visible
 from archgen.diagnostics.text_columns import TextRow
 from archgen.simulation.drawn_orders import describe_orders
 from archgen.timing.analysis import ChainResult

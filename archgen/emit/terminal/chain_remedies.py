@@ -6,7 +6,7 @@ from collections.abc import Iterator, Mapping
 from fractions import Fraction
 from typing import Any
 
-from archgen.diagnostics.common_wording import join_words
+from archgen.diagnostics import join_words
 from archgen.diagnostics.text_columns import TextRow, align_rows, format_section
 from archgen.emit.data import timing_json
 from archgen.timing.figures import figure_wording

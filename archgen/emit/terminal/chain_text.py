@@ -6,7 +6,7 @@ from collections.abc import Iterable, Iterator, Mapping
 from fractions import Fraction
 from typing import Any
 
-from archgen.diagnostics.common_wording import join_first
+from archgen.diagnostics import join_first
 from archgen.diagnostics.text_columns import TextRow, align_rows
 from archgen.emit.data import timing_json
 from archgen.emit.terminal import chain_gaps, chain_remedies

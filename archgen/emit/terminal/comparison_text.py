@@ -5,9 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 
 from archgen.compare.edits import Edit, EditKind
-from archgen.diagnostics.diagnostic import Severity
-from archgen.diagnostics.safe_text import defuse_command, make_visible
-from archgen.diagnostics.source_span import SourceTexts
+from archgen.diagnostics import Severity, SourceTexts, defuse_command, make_visible
 from archgen.emit.terminal import findings_text
 from archgen.views.changes import comparison_document
 from archgen.views.changes.comparison_document import ComparisonDocument

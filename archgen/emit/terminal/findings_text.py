@@ -7,9 +7,16 @@ from collections import Counter, defaultdict
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from typing import TextIO
 
-from archgen.diagnostics.diagnostic import Diagnostic, Label, Severity, phrase_severity_counts
-from archgen.diagnostics.safe_text import make_visible, measure_width
-from archgen.diagnostics.source_span import SourceTexts, Span
+from archgen.diagnostics import (
+    Diagnostic,
+    Label,
+    Severity,
+    SourceTexts,
+    Span,
+    make_visible,
+    measure_width,
+    phrase_severity_counts,
+)
 from archgen.diagnostics.text_columns import wrap_cell, wrap_line
 from archgen.findings.variant_findings import phrase_absence
 from archgen.frozen import NamedTuple

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from archgen.diagnostics.safe_text import defuse_command, format_json
+from archgen.diagnostics import defuse_command, format_json
 from archgen.diagnostics.text_columns import format_table
 
 TextRows = Sequence[Sequence[str]]

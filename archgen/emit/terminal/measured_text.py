@@ -6,7 +6,7 @@ from collections.abc import Iterable, Iterator, Sequence
 from fractions import Fraction
 from typing import Any
 
-from archgen.diagnostics.safe_text import make_visible
+from archgen.diagnostics import make_visible
 from archgen.diagnostics.text_columns import TextRow, align_rows, format_section
 from archgen.emit.data import timing_json
 from archgen.emit.terminal.timing_text import format_figure

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from archgen.diagnostics.safe_text import defuse_command, make_visible, measure_width
+from archgen.diagnostics import defuse_command, make_visible, measure_width
 from archgen.diagnostics.text_columns import align_rows, format_table, wrap_line
 from archgen.views.shapes import Block, Bullets, Facts, Inlines, Outline, Paragraph, Section, Table
 

@@ -6,7 +6,7 @@ import shlex
 from collections.abc import Collection, Iterator
 
 from archgen.bringup.plan_shapes import StartPlan, StartStep
-from archgen.diagnostics.safe_text import make_visible
+from archgen.diagnostics import make_visible
 from archgen.model.start_up import PHASES
 from archgen.views import start_phrases
 

@@ -6,9 +6,7 @@ from collections.abc import Callable, Iterable, Iterator, Mapping
 from fractions import Fraction
 from typing import Any
 
-from archgen.diagnostics.common_wording import format_transition
-from archgen.diagnostics.safe_text import make_visible
-from archgen.diagnostics.source_span import Span
+from archgen.diagnostics import Span, format_transition, make_visible
 from archgen.diagnostics.text_columns import TextRow, align_rows, format_section
 from archgen.emit.data import timing_json
 from archgen.emit.terminal.timing_text import format_figure

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Collection, Iterable, Iterator, Mapping
 from fractions import Fraction
 
-from archgen.diagnostics.common_wording import join_first
+from archgen.diagnostics import join_first
 from archgen.diagnostics.text_columns import TextRow, format_section
 from archgen.emit.terminal import chain_gaps, chain_remedies
 from archgen.timing.analysis import Analysis, ChainResult, HostLoad

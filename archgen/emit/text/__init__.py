@@ -14,8 +14,7 @@ from pathlib import Path
 from typing import Any
 
 from archgen.cache.file_store import FileStore
-from archgen.diagnostics.diagnostic import Diagnostic
-from archgen.diagnostics.source_span import Span
+from archgen.diagnostics import Diagnostic, Span
 from archgen.emit.backend_manifests import Backend
 from archgen.emit.file_tree import FileTree, list_files_below, make_file_tree
 from archgen.emit.manifest_parsing import BACKEND_ERROR_RULE

@@ -12,7 +12,7 @@ from __future__ import annotations
 import re
 from collections.abc import Collection, Iterable, Iterator, Mapping
 
-from archgen.diagnostics.suggestions import find_closest
+from archgen.diagnostics import find_closest
 from archgen.emit.workspace.python_code import (
     OwnField,
     OwnName,

@@ -5,9 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import TypedDict
 
-from archgen.diagnostics.diagnostic import Diagnostic, Label, diagnose_repetition
-from archgen.diagnostics.source_span import Span
-from archgen.diagnostics.suggestions import did_you_mean
+from archgen.diagnostics import Diagnostic, Label, Span, diagnose_repetition, did_you_mean
 from archgen.frozen import NamedTuple
 from archgen.link import mapping_values
 from archgen.model.message_types import PART_KEYS, DataConstant, DataField

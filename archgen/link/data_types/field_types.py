@@ -8,10 +8,7 @@ from __future__ import annotations
 import re
 from collections.abc import Collection, Iterator, Mapping
 
-from archgen.diagnostics.common_wording import join_words
-from archgen.diagnostics.diagnostic import Diagnostic, Label
-from archgen.diagnostics.source_span import NO_SPAN, Span
-from archgen.diagnostics.suggestions import did_you_mean
+from archgen.diagnostics import NO_SPAN, Diagnostic, Label, Span, did_you_mean, join_words
 from archgen.frozen import NamedTuple, replace
 from archgen.link.shipped_interfaces import load_shipped_interfaces
 from archgen.model.generic_names import read_generic_name, write_generic_name

@@ -10,8 +10,7 @@ from __future__ import annotations
 import re
 from collections.abc import Iterator, Mapping, Sequence
 
-from archgen.diagnostics.diagnostic import Diagnostic, Label
-from archgen.diagnostics.source_span import Span, first_written_span
+from archgen.diagnostics import Diagnostic, Label, Span, first_written_span
 from archgen.frozen import NamedTuple, replace
 from archgen.link.data_types.field_reading import explain_bad_text, write_literal
 from archgen.link.data_types.field_types import FieldTypeReader, TypeSources, is_bound_name

@@ -6,7 +6,7 @@ from collections.abc import Callable, Mapping
 
 from archgen.compose.expanded_project import ExpandedProject
 from archgen.compose.instance_overlay import lay_node
-from archgen.diagnostics.diagnostic import Diagnostic, Label
+from archgen.diagnostics import Diagnostic, Label
 from archgen.frozen import NamedTuple
 from archgen.link import mapping_values
 from archgen.link.declare.component_declaration import DeclaredGroups

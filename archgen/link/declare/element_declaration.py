@@ -13,8 +13,7 @@ from decimal import Decimal
 from functools import cache, partial
 from typing import Any, TypeVar
 
-from archgen.diagnostics.diagnostic import Diagnostic, Label, diagnose_repetition
-from archgen.diagnostics.source_span import NO_SPAN, Span
+from archgen.diagnostics import NO_SPAN, Diagnostic, Label, Span, diagnose_repetition
 from archgen.language.language_tables import KEYS, OFFERS, SECTION_KINDS
 from archgen.link import mapping_values, sanity_checks
 from archgen.link.declare.timing_declaration import read_deadline

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 
-from archgen.diagnostics.diagnostic import Diagnostic, Label
+from archgen.diagnostics import Diagnostic, Label
 from archgen.frozen import NamedTuple
 from archgen.link import mapping_values, sanity_checks
 from archgen.link.declare.handed_parameters import HandedParameters

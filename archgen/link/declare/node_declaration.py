@@ -8,8 +8,7 @@ from __future__ import annotations
 import operator
 from collections.abc import Iterator, Mapping
 
-from archgen.diagnostics.diagnostic import Diagnostic, Label
-from archgen.diagnostics.source_span import NO_SPAN, Span
+from archgen.diagnostics import NO_SPAN, Diagnostic, Label, Span
 from archgen.frozen import dataclass, replace
 from archgen.link import mapping_values, sanity_checks
 from archgen.link.declare.component_nodes import ImplementingNodes

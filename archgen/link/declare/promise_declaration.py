@@ -5,8 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator
 from typing import TYPE_CHECKING, Any
 
-from archgen.diagnostics.diagnostic import Label
-from archgen.diagnostics.source_span import NO_SPAN
+from archgen.diagnostics import NO_SPAN, Label
 from archgen.frozen import NamedTuple, replace
 from archgen.link.declare.handed_parameters import HandedParameters
 from archgen.link.element_outline import ElementOutline

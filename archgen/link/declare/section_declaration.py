@@ -9,9 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Collection, Iterator, Mapping
 
-from archgen.diagnostics.diagnostic import Severity
-from archgen.diagnostics.source_span import Span
-from archgen.diagnostics.suggestions import did_you_mean
+from archgen.diagnostics import Severity, Span, did_you_mean
 from archgen.link import mapping_values, sanity_checks
 from archgen.link.declare.element_declaration import declare_element
 from archgen.link.reference_resolution import ReferenceResolver

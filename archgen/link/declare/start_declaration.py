@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
-from archgen.diagnostics.diagnostic import Diagnostic
+from archgen.diagnostics import Diagnostic
 from archgen.link import mapping_values, sanity_checks
 from archgen.link.inner_names import find_inner_component
 from archgen.link.value_readers import read_values
@@ -13,7 +13,7 @@ from archgen.model.start_up import ReadyConditions, StartTarget, StartUp
 from archgen.syntax.yaml_tree import MappingEntry, MappingNode, ScalarNode, SequenceNode, list_entries
 
 if TYPE_CHECKING:
-    from archgen.diagnostics.source_span import Span
+    from archgen.diagnostics import Span
     from archgen.link.reference_resolution import ReferenceResolver
 
 _NOT_INHERITED = frozenset({"ready", "once"})

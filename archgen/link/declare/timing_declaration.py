@@ -12,8 +12,7 @@ from fractions import Fraction
 from itertools import pairwise
 from typing import Literal
 
-from archgen.diagnostics.diagnostic import Diagnostic, Label
-from archgen.diagnostics.source_span import Span
+from archgen.diagnostics import Diagnostic, Label, Span
 from archgen.link import mapping_values, sanity_checks
 from archgen.link.port_resolution import PortResolver
 from archgen.link.reference_resolution import ReferenceResolver

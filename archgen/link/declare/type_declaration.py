@@ -10,9 +10,7 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from itertools import chain
 from typing import TYPE_CHECKING
 
-from archgen.diagnostics.diagnostic import Diagnostic, Label
-from archgen.diagnostics.source_span import first_written_span
-from archgen.diagnostics.suggestions import find_closest
+from archgen.diagnostics import Diagnostic, Label, find_closest, first_written_span
 from archgen.frozen import dataclass, replace
 from archgen.link import mapping_values
 from archgen.link.data_types.field_reading import TypeReading, read_type_content

@@ -10,8 +10,7 @@ from typing import TYPE_CHECKING
 
 from archgen.compose import expand_project
 from archgen.compose.variant_overlay import MissingKey, drop_key, lay_changes
-from archgen.diagnostics.diagnostic import Diagnostic
-from archgen.diagnostics.suggestions import did_you_mean
+from archgen.diagnostics import Diagnostic, did_you_mean
 from archgen.frozen import dataclass
 from archgen.language.language_tables import DECLARING_KEYS, KEYS, SECTION_KINDS
 from archgen.link import mapping_values

@@ -4,9 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 
-from archgen.diagnostics.common_wording import join_words
-from archgen.diagnostics.diagnostic import Diagnostic, Label
-from archgen.diagnostics.suggestions import did_you_mean
+from archgen.diagnostics import Diagnostic, Label, did_you_mean, join_words
 from archgen.link import mapping_values
 from archgen.link.declare.section_declaration import declare_variants
 from archgen.model.variant import BASE_NAME, Variant

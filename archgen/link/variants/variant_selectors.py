@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
 
-from archgen.diagnostics.diagnostic import Diagnostic, Severity
+from archgen.diagnostics import Diagnostic, Severity
 from archgen.frozen import NamedTuple, dataclass
 from archgen.link import mapping_values
 from archgen.link.element_outline import ElementOutline

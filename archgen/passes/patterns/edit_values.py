@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 
+from archgen.diagnostics import Span
 from archgen.diagnostics.element_origins import TreePath
-from archgen.diagnostics.source_span import Span
 from archgen.model.generic_names import write_generic_name
 from archgen.passes.patterns.architecture_view import ArchitectureView
 from archgen.passes.patterns.pass_shapes import EditKind

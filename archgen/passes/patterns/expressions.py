@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Iterator, Mapping
 
-from archgen.diagnostics.suggestions import did_you_mean
+from archgen.diagnostics import did_you_mean
 from archgen.frozen import NamedTuple
 from archgen.passes.patterns.pattern_shapes import Pattern, list_variables, parse_text_pattern
 

@@ -4,8 +4,7 @@ from __future__ import annotations
 
 from typing import Literal
 
-from archgen.diagnostics.diagnostic import Diagnostic
-from archgen.diagnostics.source_span import Span
+from archgen.diagnostics import Diagnostic, Span
 from archgen.frozen import NamedTuple
 from archgen.passes.patterns.expressions import Condition, Operand
 from archgen.passes.patterns.matching import ViewPattern

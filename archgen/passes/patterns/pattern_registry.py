@@ -5,9 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from archgen import resources
-from archgen.diagnostics.diagnostic import Diagnostic, Label
-from archgen.diagnostics.source_span import SourceTexts, Span
-from archgen.diagnostics.suggestions import did_you_mean
+from archgen.diagnostics import Diagnostic, Label, SourceTexts, Span, did_you_mean
 from archgen.frozen import dataclass
 from archgen.model.element_ids import is_id
 from archgen.passes.pass_running import PASSES

@@ -4,9 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 
-from archgen.diagnostics.diagnostic import Diagnostic, Label
+from archgen.diagnostics import Diagnostic, Label, Span
 from archgen.diagnostics.element_origins import TreePath
-from archgen.diagnostics.source_span import Span
 from archgen.passes.linked_tree import LinkedTree
 from archgen.passes.pass_shape import PassWork
 from archgen.passes.patterns.architecture_view import ArchitectureView

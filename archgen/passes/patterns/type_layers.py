@@ -8,7 +8,7 @@ from archgen.compose.instance_overlay import InstanceOverlay
 from archgen.compose.library_types import library_of_type, list_type_entries
 from archgen.compose.type_expressions import TypeExpression, parse_type_expression
 from archgen.compose.type_table import TypeTable, list_generic_names
-from archgen.diagnostics.diagnostic import Diagnostic
+from archgen.diagnostics import Diagnostic
 from archgen.diagnostics.element_origins import TreePath
 from archgen.frozen import NamedTuple
 from archgen.passes.patterns.view_elements import path_of_type

@@ -5,8 +5,7 @@ from __future__ import annotations
 import functools
 from collections.abc import Callable, Iterator, Mapping
 
-from archgen.diagnostics.diagnostic import Diagnostic
-from archgen.diagnostics.suggestions import did_you_mean
+from archgen.diagnostics import Diagnostic, did_you_mean
 from archgen.language.language_tables import SECTION_KINDS
 from archgen.link.mapping_values import list_scalars
 from archgen.passes.patterns.pass_shapes import diagnose_pass

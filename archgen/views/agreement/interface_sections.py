@@ -6,7 +6,7 @@ from collections.abc import Iterable, Iterator, Mapping
 from typing import TYPE_CHECKING
 
 from archgen.bringup.plan_shapes import StartStep
-from archgen.diagnostics.common_wording import join_words
+from archgen.diagnostics import join_words
 from archgen.frozen import dataclass, field
 from archgen.model.agreed_terms import INTERFACE_TERMS
 from archgen.model.node import Endpoint

@@ -8,7 +8,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator
 
 from archgen.derivation.ros_names import default_port_name
-from archgen.diagnostics.source_span import Span
+from archgen.diagnostics import Span
 from archgen.model.agreed_terms import RULES, hash_text
 from archgen.model.declared_timing import OutputTiming
 from archgen.model.known_interfaces import Interface, InterfaceField, Interfaces

@@ -7,7 +7,7 @@ from typing import Literal
 
 from archgen.compare.match_elements import match_elements
 from archgen.compare.matched_ids import MatchedIds
-from archgen.diagnostics.common_wording import fit_lines
+from archgen.diagnostics import fit_lines
 from archgen.frozen import dataclass, replace
 from archgen.model.agreed_terms import GENERAL_TERMS, RULES, find_agreement
 from archgen.model.partner_interfaces import PartnerInterface, PartnerPair, components_at_ends, find_interfaces_between

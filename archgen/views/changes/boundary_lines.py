@@ -14,7 +14,7 @@ from archgen.compare.comparison import BoundaryChange, ChangeKind, FigureChange,
 from archgen.compare.figure_noise import FigureNoise
 from archgen.compare.interface_figures import DELAY_NAMES
 from archgen.compare.key_phrases import tick_names
-from archgen.diagnostics.common_wording import join_words
+from archgen.diagnostics import join_words
 from archgen.frozen import dataclass, replace
 from archgen.grouping import group_pairs
 from archgen.timing.figures.figure_wording import format_compared, format_duration

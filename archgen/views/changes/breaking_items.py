@@ -12,8 +12,7 @@ from archgen.compare import Change, Comparison
 from archgen.compare.change_sentences import READERS_LEAD
 from archgen.compare.edits import Edit, find_affected_names, find_left_out
 from archgen.compare.key_phrases import shorten_text, tick_names
-from archgen.diagnostics.common_wording import fit_lines, join_words
-from archgen.diagnostics.diagnostic import Diagnostic, Severity
+from archgen.diagnostics import Diagnostic, Severity, fit_lines, join_words
 from archgen.frozen import dataclass, replace
 from archgen.model.project_settings import BREAK_CATEGORIES, BreakCategory
 from archgen.views.changes import breaking_verdict

@@ -15,9 +15,7 @@ from archgen.compare.agreements import (
     list_agreement_targets,
 )
 from archgen.compare.key_phrases import tick_names
-from archgen.diagnostics.common_wording import join_words
-from archgen.diagnostics.diagnostic import Severity
-from archgen.diagnostics.suggestions import did_you_mean
+from archgen.diagnostics import Severity, did_you_mean, join_words
 from archgen.frozen import NamedTuple
 from archgen.model.project_settings import (
     BREAK_CATEGORIES,

@@ -13,7 +13,7 @@ from archgen.compare import Change, Comparison
 from archgen.compare.edits import Edit, list_edits
 from archgen.compare.element_sentences import is_read_by_others
 from archgen.compare.figure_noise import FigureNoise
-from archgen.diagnostics.diagnostic import Diagnostic, Severity
+from archgen.diagnostics import Diagnostic, Severity
 from archgen.frozen import NamedTuple, dataclass, field
 from archgen.views.changes import breaking_verdict
 from archgen.views.changes.boundary_lines import write_boundary_lines

@@ -19,7 +19,7 @@ from archgen.compare.comparison import (
 )
 from archgen.compare.figure_noise import FigureNoise
 from archgen.compare.key_phrases import name_key, tick_names
-from archgen.diagnostics.common_wording import join_words, keep_first
+from archgen.diagnostics import join_words, keep_first
 from archgen.diagnostics.rule_options import format_percentage
 from archgen.frozen import dataclass, replace
 from archgen.model.node import Qos

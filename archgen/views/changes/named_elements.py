@@ -6,7 +6,7 @@ from collections.abc import Iterable, Iterator, Mapping
 
 from archgen.compare import Comparison
 from archgen.compare.key_phrases import name_partner
-from archgen.diagnostics.source_span import Span
+from archgen.diagnostics import Span
 from archgen.model.architecture import Architecture
 from archgen.model.component import Input, Output
 from archgen.model.source_repository import SourceRepository

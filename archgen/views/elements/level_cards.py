@@ -5,7 +5,7 @@ from __future__ import annotations
 import shlex
 from collections.abc import Iterator
 
-from archgen.diagnostics.source_span import Span
+from archgen.diagnostics import Span
 from archgen.model.component import Component, ComponentType, Group, Input, Output
 from archgen.model.node import Endpoint, Node, Topic
 from archgen.model.port_media import ROS, name_medium, name_on_medium, uses_ros, word_of_medium

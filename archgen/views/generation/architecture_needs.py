@@ -6,8 +6,7 @@ import re
 import unicodedata
 from collections.abc import Callable, Iterable, Iterator, Mapping
 
-from archgen.diagnostics.diagnostic import Diagnostic, Label, Rule, Severity
-from archgen.diagnostics.source_span import Span, first_written_span
+from archgen.diagnostics import Diagnostic, Label, Rule, Severity, Span, first_written_span
 from archgen.model.architecture import Architecture
 from archgen.model.component import Component, Input, Output
 from archgen.views.generation.component_records import (

@@ -9,8 +9,7 @@ from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
 from archgen.bringup.plan_shapes import StartPlan
-from archgen.diagnostics.diagnostic import Diagnostic, Rule, Severity
-from archgen.diagnostics.source_span import NO_SPAN, Span
+from archgen.diagnostics import NO_SPAN, Diagnostic, Rule, Severity, Span
 from archgen.frozen import dataclass, field
 from archgen.model.architecture import Architecture
 from archgen.model.node import Node

@@ -6,7 +6,7 @@ import math
 from collections.abc import Iterable, Mapping, Sequence
 
 from archgen.bringup.program_names import choose_own_names, find_common_message, group_endpoints
-from archgen.diagnostics.diagnostic import Diagnostic
+from archgen.diagnostics import Diagnostic
 from archgen.model.architecture import Architecture
 from archgen.model.code_names import PYTHON_KEYWORDS
 from archgen.model.component import ComponentType, Input, Output

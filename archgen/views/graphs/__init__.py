@@ -19,7 +19,7 @@ from __future__ import annotations
 
 from collections.abc import Collection, Iterable, Iterator
 
-from archgen.diagnostics.diagnostic import Diagnostic
+from archgen.diagnostics import Diagnostic
 from archgen.model.architecture import Architecture
 from archgen.model.selector_evaluation import Selection, SelectorEvaluator
 from archgen.views.graphs import selection_graphs, timing_graphs

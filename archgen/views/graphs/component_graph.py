@@ -11,7 +11,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import Literal
 
-from archgen.diagnostics.common_wording import fit_lines
+from archgen.diagnostics import fit_lines
 from archgen.frozen import replace
 from archgen.model.component import Component, Connection, Input, Output
 from archgen.model.component_nesting import find_component

@@ -8,7 +8,7 @@ from __future__ import annotations
 from collections.abc import Callable, Collection, Iterable, Iterator
 from typing import Literal
 
-from archgen.diagnostics.common_wording import fit_lines
+from archgen.diagnostics import fit_lines
 from archgen.frozen import dataclass, replace
 from archgen.model.architecture import Architecture
 from archgen.model.component import Component, Connection, Input, Output

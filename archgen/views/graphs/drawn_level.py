@@ -8,7 +8,7 @@ from __future__ import annotations
 from collections.abc import Callable, Collection, Iterable, Iterator, Sequence
 from typing import Literal
 
-from archgen.diagnostics.common_wording import fit_lines
+from archgen.diagnostics import fit_lines
 from archgen.frozen import dataclass
 from archgen.model import component_nesting
 from archgen.model.architecture import Architecture

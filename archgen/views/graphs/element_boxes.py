@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable
 from typing import Literal, cast
 
-from archgen.diagnostics.diagnostic import Severity
+from archgen.diagnostics import Severity
 from archgen.frozen import dataclass, replace
 from archgen.model.architecture import Architecture
 from archgen.model.component import Component

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Collection, Iterator, Sequence
 
-from archgen.diagnostics.common_wording import fit_lines
+from archgen.diagnostics import fit_lines
 from archgen.frozen import dataclass, replace
 from archgen.grouping import group_pairs
 from archgen.model.node import Endpoint, Node, Topic

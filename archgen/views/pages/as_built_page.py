@@ -15,7 +15,7 @@ from archgen.conformance.seen_record import (
     list_seen_components,
     name_end,
 )
-from archgen.diagnostics.common_wording import floor_percent
+from archgen.diagnostics import floor_percent
 from archgen.model.architecture import Architecture
 from archgen.model.node import Endpoint
 from archgen.views import inline_text

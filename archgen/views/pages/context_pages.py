@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Callable, Iterable, Iterator
 
-from archgen.diagnostics.natural_order import order_naturally
+from archgen.diagnostics import order_naturally
 from archgen.model.component import Component, Input, Output
 from archgen.model.component_nesting import find_component
 from archgen.model.message_types import ConceptualType, flow_of

@@ -6,8 +6,7 @@ from collections.abc import Iterator, Sequence
 from itertools import pairwise
 
 from archgen.analyses.size_counts import ProgressCounts, measure_progress
-from archgen.diagnostics.common_wording import join_words
-from archgen.diagnostics.diagnostic import phrase_severity_counts
+from archgen.diagnostics import join_words, phrase_severity_counts
 from archgen.model.project_history import History, HistoryPoint
 from archgen.views import element_references, inline_text, requirement_servers
 from archgen.views.inline_text import count_noun

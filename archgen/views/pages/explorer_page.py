@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable
 from itertools import chain
 
-from archgen.diagnostics.common_wording import join_first
+from archgen.diagnostics import join_first
 from archgen.views import inline_text
 from archgen.views.graphs.drawn_level import list_flows
 from archgen.views.lookup import Lookup

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator
 from typing import TypeVar
 
-from archgen.diagnostics.natural_order import order_naturally
+from archgen.diagnostics import order_naturally
 from archgen.frozen import replace
 from archgen.model.component import Output
 from archgen.model.known_interfaces import Interface, InterfaceField

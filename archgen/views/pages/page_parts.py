@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping
 
-from archgen.diagnostics.source_span import NO_SPAN, Span
+from archgen.diagnostics import NO_SPAN, Span
 from archgen.frozen import replace
 from archgen.language.language_tables import SECTION_KINDS
 from archgen.model.architecture import Architecture

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from typing import TYPE_CHECKING
 
-from archgen.diagnostics.common_wording import join_first
+from archgen.diagnostics import join_first
 from archgen.frozen import dataclass
 from archgen.model.architecture import Partner
 from archgen.model.component import Component

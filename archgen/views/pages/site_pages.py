@@ -4,8 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
 
-from archgen.diagnostics.common_wording import join_words
-from archgen.diagnostics.natural_order import order_naturally
+from archgen.diagnostics import join_words, order_naturally
 from archgen.frozen import dataclass, replace
 from archgen.model.architecture import Architecture
 from archgen.model.node import Node

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from itertools import groupby
 
-from archgen.diagnostics.common_wording import join_first
+from archgen.diagnostics import join_first
 from archgen.timing.figures.timing_values import TimingValue
 from archgen.views import inline_text
 from archgen.views.inline_text import count_noun

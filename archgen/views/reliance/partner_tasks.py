@@ -7,9 +7,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from typing import TYPE_CHECKING, Literal
 
-from archgen.diagnostics.common_wording import join_words
-from archgen.diagnostics.diagnostic import Diagnostic, Severity
-from archgen.diagnostics.source_span import NO_SPAN, Span
+from archgen.diagnostics import NO_SPAN, Diagnostic, Severity, Span, join_words
 from archgen.frozen import dataclass, replace
 from archgen.model.node import Node
 from archgen.views import element_references

@@ -8,8 +8,7 @@ from __future__ import annotations
 import dataclasses
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 
-from archgen.diagnostics.common_wording import join_first, join_words
-from archgen.diagnostics.diagnostic import Diagnostic
+from archgen.diagnostics import Diagnostic, join_first, join_words
 from archgen.model.component import Component
 from archgen.model.requirement import Requirement
 from archgen.timing.analysis import ChainResult

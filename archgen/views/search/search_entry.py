@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Iterable, Iterator
 
-from archgen.diagnostics.diagnostic import Diagnostic
+from archgen.diagnostics import Diagnostic
 from archgen.frozen import dataclass
 from archgen.views.lookup import Lookup
 from archgen.views.shapes import Markdown, Page

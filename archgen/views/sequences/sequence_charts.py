@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Collection, Iterator, Sequence
 from itertools import pairwise
 
-from archgen.diagnostics.common_wording import join_first
+from archgen.diagnostics import join_first
 from archgen.frozen import replace
 from archgen.model.architecture import UseCase
 from archgen.model.path_resolver import title_from_id

@@ -5,8 +5,7 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Iterable, Mapping
 
-from archgen.diagnostics.common_wording import join_words
-from archgen.diagnostics.diagnostic import Diagnostic, Severity, phrase_severity_counts
+from archgen.diagnostics import Diagnostic, Severity, join_words, phrase_severity_counts
 from archgen.views import element_references, inline_text
 from archgen.views.lookup import Lookup
 from archgen.views.shapes import Inlines, Status, Table, Text, make_columns

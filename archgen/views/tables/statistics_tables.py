@@ -12,7 +12,7 @@ from archgen.analyses.size_counts import (
     measure_progress,
     measure_size,
 )
-from archgen.diagnostics.common_wording import floor_percent, shorten_hash
+from archgen.diagnostics import floor_percent, shorten_hash
 from archgen.model.architecture import Architecture
 from archgen.model.project_history import FindingCounts, History, HistoryPoint, ProgressRow
 from archgen.views import inline_text

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from archgen.diagnostics.natural_order import order_naturally
+from archgen.diagnostics import order_naturally
 from archgen.model.graph_search import find_reachable
 from archgen.model.message_types import ConceptualType
 from archgen.model.port_media import name_medium

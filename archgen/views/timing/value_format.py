@@ -7,7 +7,7 @@ from decimal import ROUND_CEILING, ROUND_FLOOR, ROUND_HALF_UP, Decimal
 from fractions import Fraction
 from functools import lru_cache, partial
 
-from archgen.diagnostics.common_wording import join_first
+from archgen.diagnostics import join_first
 from archgen.frozen import replace
 from archgen.timing import analysis
 from archgen.timing.analysis import Analysis

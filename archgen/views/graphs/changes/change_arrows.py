@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 
-from archgen.diagnostics.common_wording import fit_lines
+from archgen.diagnostics import fit_lines
 from archgen.frozen import dataclass
 from archgen.views.changes.change_wording import BREAK_SIGN, CHANGE_SIGNS
 from archgen.views.graphs.drawn_level import FlowStyle

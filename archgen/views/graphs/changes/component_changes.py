@@ -7,7 +7,7 @@ from collections.abc import Iterator, Mapping, Sequence
 
 from archgen.compare import Comparison
 from archgen.compare.agreements import find_partner_id
-from archgen.diagnostics.common_wording import fit_lines
+from archgen.diagnostics import fit_lines
 from archgen.frozen import dataclass, replace
 from archgen.model.architecture import Architecture
 from archgen.model.component import Component

@@ -6,7 +6,7 @@ from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
 from typing import get_args
 
-from archgen.diagnostics.common_wording import fit_lines
+from archgen.diagnostics import fit_lines
 from archgen.frozen import dataclass, replace
 from archgen.views.changes.change_wording import CHANGE_SIGNS
 from archgen.views.inline_text import count_noun
