@@ -6,9 +6,11 @@ import sys
 from collections.abc import Callable, Collection, Iterator, Mapping
 from pathlib import Path
 
+from shipped_facts import list_type_facts
+
 from archgen.link import mapping_values
 from archgen.project.library_reading import load_shipped_component_types
-from archgen.project.shipped_sources import list_type_facts, read_shipped_sources
+from archgen.project.shipped_sources import read_shipped_sources
 from archgen.syntax.yaml_tree import MappingNode
 
 Form = tuple[tuple[str, ...], ...]

@@ -8,7 +8,7 @@ table with the description, the model, the resolved record and the cards.
 from archgen.compare.kinds.component_type_kind import COMPONENT_TYPE
 from archgen.compare.kinds.functional_kinds import FUNCTIONAL_KINDS
 from archgen.compare.kinds.key_spec import Effect, KeySpec, Worsening
-from archgen.compare.kinds.kind_spec import NAME_FEATURES, KindSpec, values_feature
+from archgen.compare.kinds.kind_spec import KindSpec, make_section_kind, values_feature
 from archgen.compare.kinds.project_kinds import PROJECT_KINDS
 from archgen.compare.kinds.ros_kinds import ROS_KINDS
 from archgen.compare.kinds.system_kinds import SYSTEM_KINDS
@@ -18,13 +18,8 @@ _SPECIFIED_KINDS = {
     kind.name: kind for kind in (*PROJECT_KINDS, COMPONENT_TYPE, *FUNCTIONAL_KINDS, *ROS_KINDS, *SYSTEM_KINDS)
 }
 PLAIN_KINDS = {
-    kind: KindSpec(
-        kind,
-        section.replace("_", " ").capitalize(),
-        elements=lambda version, section=section: getattr(version.architecture, section),  # type: ignore[misc]
-        features=(*NAME_FEATURES, values_feature(4, KEY_FACTS[kind].keys() - {"title"})),
-    )
-    for section, kind in SECTION_KINDS.items()
+    kind: make_section_kind(kind, values_feature(4, KEY_FACTS[kind].keys() - {"title"}))
+    for kind in SECTION_KINDS.values()
     if kind in KIND_EFFECTS and kind not in _SPECIFIED_KINDS
 }
 """Kinds of which the description says all: they are recognised by their names and by what they say."""

@@ -25,7 +25,7 @@ from archgen.compare.normal_values import (
 )
 from archgen.compare.version_pair import ElementKey
 from archgen.frozen import dataclass, field
-from archgen.language.language_tables import KEY_FACTS, KIND_EFFECTS, KeyFacts
+from archgen.language.language_tables import KEY_FACTS, KIND_EFFECTS, SECTION_KINDS, KeyFacts
 from archgen.model.component import Component, list_component_ports
 from archgen.model.parameter import format_parameter
 from archgen.model.path_resolver import title_from_id
@@ -283,6 +283,20 @@ def name_features(find_name: Callable[[Any], str]) -> tuple[FeatureSpec, Feature
 
 
 NAME_FEATURES = name_features(attrgetter("id"))
+
+
+def make_section_kind(kind: str, *features: FeatureSpec, names: tuple[FeatureSpec, ...] = NAME_FEATURES) -> KindSpec:
+    """Make the kind of what a section lists by id: its heading and its elements are the section's."""
+    section = next(section for section, section_kind in SECTION_KINDS.items() if section_kind == kind)
+    heading = section.replace("_", " ").capitalize()
+    all_features = (*names, *features)
+    return KindSpec(
+        kind,
+        heading,
+        elements=lambda version: getattr(version.architecture, section),
+        features=all_features,
+        word=kind.replace("_", " "),
+    )
 
 
 def values_feature(weight: float, attributes: Iterable[str]) -> FeatureSpec:

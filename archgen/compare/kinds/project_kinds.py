@@ -6,8 +6,9 @@ from collections.abc import Mapping
 
 from archgen.compare.element_likeness import letter_pairs, word_set
 from archgen.compare.kinds.key_spec import Effect, KeySpec, ReadContext
-from archgen.compare.kinds.kind_spec import NAME_FEATURES, FeatureSpec, KindSpec, text_feature, users_feature
+from archgen.compare.kinds.kind_spec import FeatureSpec, KindSpec, make_section_kind, text_feature, users_feature
 from archgen.compare.normal_values import freeze_value, normalize_text, unordered_values
+from archgen.frozen import replace
 from archgen.model.architecture import ProjectInfo
 from archgen.model.element_annotations import describe_range
 from archgen.model.path_resolver import title_from_id
@@ -117,12 +118,9 @@ CHAPTER = KindSpec(
     Effect.TEXT,
     lambda version: version.chapters,
 )
-PARTNER = KindSpec(
-    "partner",
-    "Partners",
-    elements=lambda version: version.architecture.partners,
-    features=(
-        *NAME_FEATURES,
+PARTNER = replace(
+    make_section_kind(
+        "partner",
         FeatureSpec("owns", 4, lambda relations, partner: frozenset(relations.elements_by_owner[partner.id])),
     ),
     owner=lambda partner, context: context.common_id("partner", partner.id),
@@ -133,23 +131,6 @@ _NUMBERED_FEATURES = (
     FeatureSpec("title", 4, lambda _, element: word_set(element.title), lambda element: element.title == element.id),
     text_feature(2, "description"),
 )
-USE_CASE = KindSpec(
-    "use_case",
-    "Use cases",
-    elements=lambda version: version.architecture.use_cases,
-    features=(
-        *_NUMBERED_FEATURES,
-        users_feature("use_case", 3, "requirement"),
-    ),
-    word="use case",
-)
-REQUIREMENT = KindSpec(
-    "requirement",
-    "Requirements",
-    elements=lambda version: version.architecture.requirements,
-    features=(
-        *_NUMBERED_FEATURES,
-        users_feature("requirement", 3, "component"),
-    ),
-)
+USE_CASE = make_section_kind("use_case", users_feature("use_case", 3, "requirement"), names=_NUMBERED_FEATURES)
+REQUIREMENT = make_section_kind("requirement", users_feature("requirement", 3, "component"), names=_NUMBERED_FEATURES)
 PROJECT_KINDS = (PROJECT, CHAPTER, PARTNER, USE_CASE, REQUIREMENT)

@@ -6,17 +6,18 @@ from archgen.compare.element_likeness import word_set
 from archgen.compare.element_relations import ElementRelations
 from archgen.compare.kinds.key_spec import KeySpec, ReadContext, Worsening, read_owner
 from archgen.compare.kinds.kind_spec import (
-    NAME_FEATURES,
     FeatureSpec,
-    KindSpec,
+    make_section_kind,
     mark_values,
     nodes_feature,
     reference_feature,
     text_feature,
     value_feature,
 )
+from archgen.frozen import replace
+from archgen.model.architecture import Chain, Policy
 from archgen.model.coordinate_frames import Frame
-from archgen.model.deployment import Host
+from archgen.model.deployment import Host, Resource
 
 
 def _mark_containers(relations: ElementRelations, host: Host) -> frozenset[str]:
@@ -24,49 +25,25 @@ def _mark_containers(relations: ElementRelations, host: Host) -> frozenset[str]:
     return relations.common_ids("container", [container.id for container in containers if container.host == host.id])
 
 
-HOST = KindSpec(
+HOST = make_section_kind(
     "host",
-    "Hosts",
-    elements=lambda version: version.architecture.hosts,
-    features=(
-        *NAME_FEATURES,
-        nodes_feature("host", 8),
-        FeatureSpec("containers", 2, _mark_containers),
-        value_feature("cores", 1, "cores"),
-        text_feature(1, "description"),
-    ),
+    nodes_feature("host", 8),
+    FeatureSpec("containers", 2, _mark_containers),
+    value_feature("cores", 1, "cores"),
+    text_feature(1, "description"),
 )
 
 
-CONTAINER = KindSpec(
-    "container",
-    "Containers",
-    elements=lambda version: version.architecture.containers,
-    features=(
-        *NAME_FEATURES,
-        nodes_feature("container", 5),
-        value_feature("host", 1, "host"),
-        value_feature("threads", 1, "threads"),
-    ),
+CONTAINER = make_section_kind(
+    "container", nodes_feature("container", 5), value_feature("host", 1, "host"), value_feature("threads", 1, "threads")
 )
 
 
-RESOURCE = KindSpec(
-    "resource",
-    "Resources",
-    elements=lambda version: version.architecture.resources,
-    features=(
-        *NAME_FEATURES,
-        FeatureSpec(
-            "users",
-            5,
-            lambda relations, resource: relations.common_ids(
-                "node", [node.id for node in relations.architecture.nodes_using(resource.id)]
-            ),
-        ),
-        value_feature("host", 1, "host"),
-    ),
-)
+def _mark_users(relations: ElementRelations, resource: Resource) -> frozenset[str]:
+    return relations.common_ids("node", [node.id for node in relations.architecture.nodes_using(resource.id)])
+
+
+RESOURCE = make_section_kind("resource", FeatureSpec("users", 5, _mark_users), value_feature("host", 1, "host"))
 # Those ends in the key `connects` that are components.
 _DEVICES = KeySpec(
     "devices",
@@ -76,18 +53,15 @@ _DEVICES = KeySpec(
     list_verbs=("now connects", "no longer connects"),
     new_verb="connects",
 )
-LINK = KindSpec(
-    "link",
-    "Links",
-    (_DEVICES,),
-    elements=lambda version: version.architecture.links,
-    features=(
-        *NAME_FEATURES,
+LINK = replace(
+    make_section_kind(
+        "link",
         reference_feature("connects", 4, "host", "connects"),
         FeatureSpec(
             "figures", 2, lambda _, link: mark_values(link.bandwidth, f"best {link.best}", f"worst {link.worst}")
         ),
     ),
+    own_keys=(_DEVICES,),
     owner=read_owner,
 )
 
@@ -113,12 +87,9 @@ def _mark_frame_ports(relations: ElementRelations, frame: Frame) -> frozenset[st
     return relations.common_ids("input", ports) | relations.common_ids("output", ports)
 
 
-FRAME = KindSpec(
-    "frame",
-    "Frames",
-    elements=lambda version: version.architecture.frames,
-    features=(
-        *NAME_FEATURES,
+FRAME = replace(
+    make_section_kind(
+        "frame",
         FeatureSpec("ports", 4, _mark_frame_ports),
         FeatureSpec("children", 3, lambda relations, frame: frozenset(relations.users_by_element[f"below:{frame.id}"])),
         value_feature("parent", 2, "parent"),
@@ -132,56 +103,25 @@ FRAME = KindSpec(
 )
 
 
-CHAIN = KindSpec(
-    "chain",
-    "Chains",
-    elements=lambda version: version.architecture.chains,
-    features=(
-        *NAME_FEATURES,
-        FeatureSpec(
-            "through",
-            6,
-            lambda relations, chain: frozenset[str]().union(
-                *(relations.common_ids(point.kind, [point.id]) for point in chain.through)
-            ),
-        ),
-        value_feature("deadline", 1, "deadline"),
-    ),
-)
+def _mark_waypoints(relations: ElementRelations, chain: Chain) -> frozenset[str]:
+    return frozenset[str]().union(*(relations.common_ids(point.kind, [point.id]) for point in chain.through))
 
 
-POLICY = KindSpec(
-    "policy",
-    "Policies",
-    elements=lambda version: version.architecture.policies,
-    features=(
-        *NAME_FEATURES,
-        FeatureSpec(
-            "forbids",
-            5,
-            lambda _, policy: mark_values(
-                f"{policy.forbid_from} > {policy.forbid_to}", policy.require and str(policy.require)
-            ),
-        ),
-    ),
-)
-VARIANT = KindSpec(
+CHAIN = make_section_kind("chain", FeatureSpec("through", 6, _mark_waypoints), value_feature("deadline", 1, "deadline"))
+
+
+def _mark_forbidden(_: ElementRelations, policy: Policy) -> frozenset[str]:
+    return mark_values(f"{policy.forbid_from} > {policy.forbid_to}", policy.require and str(policy.require))
+
+
+POLICY = make_section_kind("policy", FeatureSpec("forbids", 5, _mark_forbidden))
+VARIANT = make_section_kind(
     "variant",
-    "Variants",
-    elements=lambda version: version.architecture.variants,
-    features=(
-        *NAME_FEATURES,
-        # Where it writes counts more than what it writes: a variant may be renamed and changed at once.
-        FeatureSpec("places", 8, lambda _, variant: mark_values(*(each.path for each in variant.changes))),
-        FeatureSpec("changes", 2, lambda _, variant: mark_values(*(f"{c.path}: {c.value}" for c in variant.changes))),
-        FeatureSpec("leaves out", 3, lambda _, variant: mark_values(variant.without, *variant.drop)),
-        reference_feature("base", 0.5, "variant", "of"),
-    ),
+    # Where it writes counts more than what it writes: a variant may be renamed and changed at once.
+    FeatureSpec("places", 8, lambda _, variant: mark_values(*(each.path for each in variant.changes))),
+    FeatureSpec("changes", 2, lambda _, variant: mark_values(*(f"{c.path}: {c.value}" for c in variant.changes))),
+    FeatureSpec("leaves out", 3, lambda _, variant: mark_values(variant.without, *variant.drop)),
+    reference_feature("base", 0.5, "variant", "of"),
 )
-VIEW = KindSpec(
-    "view",
-    "Views",
-    elements=lambda version: version.architecture.views,
-    features=(*NAME_FEATURES, FeatureSpec("show", 5, lambda _, view: word_set(view.show))),
-)
+VIEW = make_section_kind("view", FeatureSpec("show", 5, lambda _, view: word_set(view.show)))
 SYSTEM_KINDS = (HOST, CONTAINER, RESOURCE, LINK, FRAME, CHAIN, POLICY, VARIANT, VIEW)
