@@ -47,10 +47,7 @@ def holds_bytes(path: Path, data: bytes) -> bool:
 
 @contextmanager
 def open_named_file(path: Path, flags: int = 0) -> Iterator[BinaryIO]:
-    """Open a file to be read in parts; `flags` are further ones of `os.open`.
-
-    Raise NoRegularFileError, and OSError.
-    """
+    """Open a file to be read in parts; `flags` are further ones of `os.open`. Raise NoRegularFileError, and OSError."""
     # Opened first, then examined by its descriptor: a path checked before it is opened could be swapped in between.
     # O_NONBLOCK keeps the call from waiting for a pipe's writer; O_BINARY exists on Windows only.
     descriptor = os.open(path, flags | os.O_RDONLY | getattr(os, "O_NONBLOCK", 0) | getattr(os, "O_BINARY", 0))

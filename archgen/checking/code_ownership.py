@@ -36,10 +36,7 @@ def find_ownership(checked_project: CheckedProject) -> Ownership:
 
 
 def make_codeowners(checked_project: CheckedProject, prefix: str | None = None) -> CodeownersFile:
-    """Make CODEOWNERS.
-
-    `prefix` is the project's folder relative to the root of the repository; None asks git.
-    """
+    """Make CODEOWNERS. `prefix` is the project's folder relative to the root of the repository; None asks git."""
     return emitter.render_codeowners(
         _add_shared_files(find_ownership(checked_project), checked_project),
         _repository_prefix(checked_project.root) if prefix is None else prefix,
