@@ -50,7 +50,7 @@ def find_repository(path: Path) -> GitRepository:
     prefix = prefix.removesuffix("\n").removesuffix("/")
     top = existing_folder
     if bare == "true" or in_git_folder == "true":
-        top = _git_folder(existing_folder)
+        top = Path(run_git(existing_folder, "rev-parse", "--absolute-git-dir").text.removesuffix("\n"))
         missing_path = os.path.relpath(os.path.realpath(path), top).replace(os.sep, "/").removeprefix(".")
     else:
         for _ in filter(None, prefix.split("/")):
@@ -60,10 +60,6 @@ def find_repository(path: Path) -> GitRepository:
             msg = f"the repository around {path} has its files elsewhere (`core.worktree`): archgen compares those beside `.git`"
             raise NoRepositoryError(msg)
     return GitRepository(top, "/".join(filter(None, (prefix, missing_path))), bare == "true", shallow == "true")
-
-
-def _git_folder(folder: Path) -> Path:
-    return Path(run_git(folder, "rev-parse", "--absolute-git-dir").text.removesuffix("\n"))
 
 
 def _explain_refusal(path: Path, error_text: str) -> str:

@@ -13,7 +13,6 @@ from typing import Any
 from archgen.bringup.start_plan import resolve_conditions
 from archgen.compare.kinds.key_spec import ReadContext, Reader
 from archgen.compare.normal_values import (
-    ElementTitle,
     freeze_value,
     last_part,
     normalize_text,
@@ -24,7 +23,7 @@ from archgen.compare.normal_values import (
 from archgen.compare.version_pair import SOME_PORTS
 from archgen.frozen import replace
 from archgen.model.architecture import UseCase
-from archgen.model.component import PATTERN_GROUP, Component, ComponentType, Input, Output, PerformanceIndicator
+from archgen.model.component import PATTERN_GROUP, Component, Input, Output
 from archgen.model.declared_timing import Timing, list_fair_figures
 from archgen.model.deployment import Host
 from archgen.model.generic_names import read_generic_name
@@ -32,17 +31,12 @@ from archgen.model.message_types import ConceptualType, DataField
 from archgen.model.node import Node
 from archgen.model.parameter import format_parameter
 from archgen.model.path_resolver import title_from_id
-from archgen.model.promise import Deprecation, Promise, format_range
+from archgen.model.promise import Deprecation, format_range
 from archgen.model.quantity import Quantity
 from archgen.model.requirement import Requirement
 from archgen.model.start_up import StartTarget, StartUp
 from archgen.model.use_case_steps import StepEnd
 from archgen.timing.figures.figure_wording import format_rate
-
-
-def read_name_as_title(component: Component, _context: ReadContext) -> ElementTitle:
-    """Return the title of a component, which is generated from the last part of its id."""
-    return normalize_title(component.name, component.title)
 
 
 def read_requirements(component: Component, context: ReadContext) -> frozenset[str]:
@@ -67,11 +61,6 @@ def _describe_ports(ports: Mapping[str, object], *, is_known: bool) -> str | Non
 def read_medium(port: Input | Output, _context: ReadContext) -> str | None:
     """Return the medium that a port says itself."""
     return port.medium if port.medium_written else None
-
-
-def find_indicators(component: Component, _context: ReadContext) -> Mapping[str, PerformanceIndicator]:
-    """Return the indicators of performance, each by what stands before its keys."""
-    return {f"{indicator.id}.": indicator for indicator in component.performance}
 
 
 def find_node_timing(component: Component, context: ReadContext) -> Timing | None:
@@ -155,18 +144,8 @@ def read_component_type(component: Component, context: ReadContext) -> str | Non
     return f"exactly {type_name}" if component.is_reference else type_name
 
 
-def read_base(component_type: ComponentType, context: ReadContext) -> str | None:
-    """Return the component type that a component type is made from."""
-    return name_common_type(component_type.base, context)
-
-
 NO_DAY = "no day"
 """What is compared where something is deprecated and nobody has said until when."""
-
-
-def read_range(promise: Promise, _context: ReadContext) -> str | None:
-    """Return the promised least and greatest value."""
-    return format_range(promise.range) if promise.range else None
 
 
 def find_output_deprecation(output: Output, context: ReadContext) -> Deprecation | None:
@@ -176,16 +155,6 @@ def find_output_deprecation(output: Output, context: ReadContext) -> Deprecation
         return found
     # As people write it: instances of a type say the same of their own outputs.
     return replace(found, use=found.use.rpartition(".")[2])
-
-
-def find_type_deprecation(conceptual_type: ConceptualType, context: ReadContext) -> Deprecation | None:
-    """Return until when a type is there, and what replaces it."""
-    return _find_deprecation(conceptual_type.deprecated, "type", context)
-
-
-def find_component_type_deprecation(component_type: ComponentType, context: ReadContext) -> Deprecation | None:
-    """Return until when a component type is there, and what replaces it."""
-    return _find_deprecation(component_type.deprecated, "component_type", context)
 
 
 def _find_deprecation(written: Deprecation | None, kind: str, context: ReadContext) -> Deprecation | None:
@@ -350,24 +319,26 @@ READERS: Mapping[tuple[str, str], Reader] = {
     ("use_case", "actors."): lambda use_case, _: {actor.id: actor.title for actor in use_case.actors.values()},
     ("use_case", "steps"): _read_steps,
     ("requirement", "verified_by"): _read_verifications,
-    ("component", "title"): read_name_as_title,
+    ("component", "title"): lambda each, _: normalize_title(each.name, each.title),
     ("component", "is"): read_component_type,
     ("component", "requirements"): read_requirements,
-    ("component", "performance."): find_indicators,
+    ("component", "performance."): lambda each, _: {f"{indicator.id}.": indicator for indicator in each.performance},
     ("component", "inputs"): read_inputs,
     ("component", "outputs"): read_outputs,
     ("component", "parameters."): read_parameters,
     ("component", "operations."): read_operations,
     ("component", "timing."): find_node_timing,
-    ("component_type", "is"): read_base,
-    ("component_type", "deprecated."): find_component_type_deprecation,
+    ("component_type", "is"): lambda each, context: name_common_type(each.base, context),
+    ("component_type", "deprecated."): lambda each, context: _find_deprecation(
+        each.deprecated, "component_type", context
+    ),
     ("input", "medium"): read_medium,
     ("output", "medium"): read_medium,
     ("output", "deprecated."): find_output_deprecation,
     ("type", "fields."): _read_fields,
-    ("type", "deprecated."): find_type_deprecation,
+    ("type", "deprecated."): lambda each, context: _find_deprecation(each.deprecated, "type", context),
     ("frame", "by"): lambda frame, context: context.common_id(frame.by_kind, frame.by),
-    ("promise", "range"): read_range,
+    ("promise", "range"): lambda promise, _: format_range(promise.range) if promise.range else None,
     ("node", "name"): lambda node, _: None if node.name == node.id else node.name,
     ("node", "command"): lambda node, _: " ".join(map(shlex.quote, node.command)) or None,
     ("node", "arguments"): lambda node, _: " ".join(map(shlex.quote, node.arguments)) or None,

@@ -43,7 +43,7 @@ def declare_timing(owner_entry: MappingEntry, ports: PortResolver, diagnostics: 
     uses = read_resource_times(body, ports, diagnostics)
     timing = Timing(
         **read_values("timing", Timing, body),
-        wcet=read_wcet(body),
+        wcet=_read_longest(body, "wcet"),
         measured_times=read_measured_times(body, ports.owner_id, diagnostics),
         trigger=_read_trigger(body, ports, diagnostics),
         inputs=dict(read_input_timing(body, ports, diagnostics)),
@@ -124,11 +124,6 @@ def _parse_fraction(text: str) -> Fraction | None:
         return Fraction(text) if len(text) <= _MAX_NUMBER_LENGTH else None
     except (ValueError, ZeroDivisionError):
         return None
-
-
-def read_wcet(body: MappingNode) -> Quantity | None:
-    """Read the worst execution time: `wcet` itself, or `max` below it."""
-    return _read_longest(body, "wcet")
 
 
 def _read_longest(mapping: MappingNode, key: str) -> Quantity | None:

@@ -304,7 +304,7 @@ def convert_documents(documents: Sequence[XmiDocument], index: UmlIndex, ledger:
         "links": deployment.make_links(),
         "nodes": deployment.make_nodes(),
     }
-    titled = _find_titled(documents)
+    titled = next((model for document in documents for model in document.models if get_name(model)), None)
     if titled is not None:
         ledger.take(titled)
     _count_relations(catalogue, uses, ledger, assembly)
@@ -341,11 +341,6 @@ def _note_packages(catalogue: UmlCatalogue, ledger: ImportLedger, groups: frozen
     for package in catalogue.all_packages:
         if package not in groups and not get_id(package).startswith(OWN_PREFIX):
             ledger.note(package, f"{name_element(package)} is no group: no component stands directly in it")
-
-
-def _find_titled(documents: Sequence[XmiDocument]) -> XmlElement | None:
-    """Return the model whose name is the project's title."""
-    return next((model for document in documents for model in document.models if get_name(model)), None)
 
 
 _WHOLE_KINDS = frozenset({"Connector", "Operation", "Association", "CommunicationPath", "EnumerationLiteral"})

@@ -106,12 +106,8 @@ def _list_contradictions(exchanges: Sequence[PartnerExchange], partner: str) -> 
         other = next(each for each in exchange.pair if each != partner)
         for terms in exchange.interfaces:
             place = terms.interface.output.at if terms.interface.output else NO_SPAN
-            chains = _list_deadlines(terms)
+            chains = tuple(chain.id for chain in terms.chains if chain.deadline or chain.shares)
             yield from (Task("contradiction", text, chains, (), (other,), place) for text in terms.contradictions)
-
-
-def _list_deadlines(terms: InterfaceTerms) -> tuple[str, ...]:
-    return tuple(chain.id for chain in terms.chains if chain.deadline or chain.shares)
 
 
 def _list_terms(lookup: Lookup, impact: PartnerImpact) -> Iterator[Task]:
