@@ -47,7 +47,9 @@ RULES: tuple[Rule, ...] = (
     Rule("unknown-variant", Severity.ERROR, "A variant is built on one that the project does not have.", fixed=True),
     Rule("circular-variant", Severity.ERROR, "Variants are built on one another in a circle.", fixed=True),
     Rule(
-        "missing-variant-part", Severity.ERROR, "A variant drops a key that is not there, or changes what it takes out."
+        "missing-variant-part",
+        Severity.ERROR,
+        "A variant drops a key that is not there, changes what it takes out, or names something and changes nothing of it.",
     ),
     Rule("empty-variant-selector", Severity.WARNING, "A word of a variant's `without` selects nothing."),
 )
