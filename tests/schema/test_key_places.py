@@ -66,6 +66,7 @@ def _component(text: str) -> str:
         ("variants: {v: {changes: {package: urg}}}", "write it as `nodes: {NODE: {package: ...}}`"),
         ("policies: {p: {forbid: {from: a, to: b, of: c}}}", "a flow has two ends: `forbid: {from: ..., to: ...}`; `of` "),
         ("policies: {p: {require: {of: a, inputs_from: b, from: c}}}", "`require` asks something of elements: `require: "),
+        ("nodes: {n: {program: {package: urg, executable: x}}}", "write `package` and `executable` at `n` itself"),
         ("nodes: {n: {m: {package: urg}}}", "it looks like a ROS node of its own: begin it in the column of `n`"),
     ],
 )  # fmt: skip
