@@ -89,6 +89,8 @@ def _merge_column(column: int, form_by_distro: Mapping[str, Form]) -> str:
 def _name_distros(distros: Collection[str]) -> str:
     """Return distributions in their order; of three or more that follow one another the first and the last one."""
     places = sorted(map(_ORDER.index, distros))
+    if len(places) == len(_ORDER):
+        return "all"
     if len(places) not in {1, 2} and places[-1] - places[0] == len(places) - 1:
         return f"{_ORDER[places[0]]} to {_ORDER[places[-1]]}"
     return ", ".join(_ORDER[place] for place in places)
