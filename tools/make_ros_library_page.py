@@ -3,12 +3,11 @@
 from __future__ import annotations
 
 import sys
-from collections.abc import Callable, Collection, Iterator, Mapping
+from collections.abc import Callable, Collection, Mapping
 from pathlib import Path
 
 from archgen.link import mapping_values
 from archgen.project.library_reading import load_shipped_component_types
-from archgen.project.shipped_sources import list_type_facts, read_shipped_sources
 from archgen.syntax.yaml_tree import MappingNode
 
 Form = tuple[tuple[str, ...], ...]
@@ -50,8 +49,8 @@ All types have `status: existing`: `archgen generate` makes none of their packag
 programs without its type (`package`, and `executable` or `plugin`) is [told](rules/unlike-program.md) where the program's names are not the
 design's, and nothing remaps them.
 
-Every port with its message and topic is in YAML in [ros_library](../ros_library). What was not found in the packages' sources is not there.
-How much there is:
+Every port with its message and topic is in YAML in [ros_library](../ros_library). What was not found in the packages' sources is not
+there.
 """
 
 
@@ -63,8 +62,6 @@ def format_page() -> str:
             forms.setdefault(name, {})[distro] = _describe_form(mapping_values.get_body(entry))
     lines = [
         OPENING,
-        *_list_counts(),
-        "",
         "| type | what it does | package | distributions |",
         "|---|---|---|---|",
     ]
@@ -94,16 +91,6 @@ def _name_distros(distros: Collection[str]) -> str:
     if len(places) not in {1, 2} and places[-1] - places[0] == len(places) - 1:
         return f"{_ORDER[places[0]]} to {_ORDER[places[-1]]}"
     return ", ".join(_ORDER[place] for place in places)
-
-
-def _list_counts() -> Iterator[str]:
-    yield "| distribution | types | facts | types read at the released version |"
-    yield "|---|---|---|---|"
-    for distro in _ORDER:
-        types, sources = load_shipped_component_types(distro), read_shipped_sources(distro)
-        facts = sum(len(list(list_type_facts(mapping_values.get_body(entry)))) for entry in types.values())
-        fresh_types = [name for name in types if all(source.version == source.released for source in sources[name])]
-        yield f"| {distro} | {len(types)} | {facts} | {len(fresh_types)} |"
 
 
 _ORDER = ("noetic", "humble", "jazzy", "kilted", "lyrical", "rolling")
