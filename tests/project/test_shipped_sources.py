@@ -11,8 +11,9 @@ from archgen import resources
 from archgen.link import mapping_values
 from archgen.model.known_interfaces import KNOWN_DISTROS
 from archgen.project.library_reading import load_shipped_component_types
-from archgen.project.shipped_sources import SOURCE_KINDS, ShippedSource, list_type_facts, read_shipped_sources
+from archgen.project.shipped_sources import SOURCE_KINDS, ShippedSource, read_shipped_sources
 from archgen.syntax.yaml_parser import parse_yaml
+from tests.project.shipped_facts import list_type_facts
 
 
 @pytest.mark.parametrize("distro", KNOWN_DISTROS)
