@@ -3,18 +3,15 @@
 from __future__ import annotations
 
 import sys
-from collections.abc import Callable, Collection, Iterator, Mapping
+from collections.abc import Callable, Collection, Mapping
 from pathlib import Path
-
-from shipped_facts import list_type_facts
 
 from archgen.link import mapping_values
 from archgen.project.library_reading import load_shipped_component_types
-from archgen.project.shipped_sources import read_shipped_sources
 from archgen.syntax.yaml_tree import MappingNode
 
 Form = tuple[tuple[str, ...], ...]
-"""What a type is in a distribution: the lines of the columns between its name and its distributions."""
+"""What a type is in a distribution: what it does, and its package."""
 
 DOCS = Path(__file__).resolve().parent.parent / "docs"
 OPENING = """\
@@ -35,22 +32,25 @@ groups:
       slam: {is: ros.slam_toolbox, inputs: {scan: lidar.scan}}
 ```
 
-Which types there are depends on the project's distribution. Their ports have messages as types, so that they fit whatever a project calls
-its data; topics are those of the package. Parameters are the main ones, with the values that the node itself starts with; any other is
-accepted. `archgen list --of component_types --library builtin` lists them for a project, `archgen new instance ID ros.TYPE` writes an
-instance with its inputs to be filled. A type that does not fit is changed as any other: `my_slam: {is: ros.slam_toolbox, ...}` below
-`component_types` may add ports and parameters. A node that runs one of these programs without its type (`package`, and `executable` or
-`plugin`) is [told](rules/unlike-program.md) where the program's names are not the design's, and nothing remaps them. All of them exist (`status: existing`): `archgen generate` makes none of their
-packages (what has a `package` of your own is made, unless its `status` says that it exists), and
-[asks](rules/shadowed-package.md) about other nodes that have one of these.
+| command | shows |
+|---|---|
+| `archgen list --of component_types --library builtin` | the types of the project's distribution, with their inputs and outputs |
+| `archgen new instance ID ros.TYPE` | writes an instance, with its inputs to be filled |
+| `archgen show ID` | an instance: ports, parameters, operations, and its node |
+| `archgen explain ros.amcl --distro jazzy` | where each executable, plug-in, name, port, operation and parameter was read: repository, version, commit, file and line |
 
-An input with `?` is optional. Behind a port stands what the program calls it, where that is another name, and `by` the parameter that names
-it: a filter whose `odom0` is `odom/unfiltered` reads that topic, and has no input `odom1` on the robot where nobody gives that parameter.
-`package` has the executable and the plug-in of a component, `node` is what the program calls its node where a launch file gives no name.
-Where distributions differ, those stand in brackets in which it is so.
+Ports have messages as types, so they fit whatever a project calls its data; topics are those of the package. Where a parameter names a
+topic, its value counts: a filter whose `odom0` is `odom/unfiltered` reads that topic, and has no input `odom1` on the robot where nobody
+gives that parameter. Parameters are the main ones, with the values that the node starts with; any other is accepted. A type that does not
+fit is changed as any other: `my_slam: {is: ros.slam_toolbox, ...}` below `component_types` may add ports and parameters.
 
-Each executable, plug-in, name, port, operation and parameter was read at a line of a file of the package, which `archgen explain ros.amcl`
-shows: repository, version, commit, file and line (`ros_library/sources/` holds them). What was not found is not here. How many there are:
+All types have `status: existing`: `archgen generate` makes none of their packages (what has a `package` of your own is made, unless its
+`status` says that it exists), and [asks](rules/shadowed-package.md) about other nodes that have one of these. A node that runs one of these
+programs without its type (`package`, and `executable` or `plugin`) is [told](rules/unlike-program.md) where the program's names are not the
+design's, and nothing remaps them.
+
+Every port with its message and topic is in YAML in [ros_library](../ros_library). What was not found in the packages' sources is not
+there.
 """
 
 
@@ -62,13 +62,11 @@ def format_page() -> str:
             forms.setdefault(name, {})[distro] = _describe_form(mapping_values.get_body(entry))
     lines = [
         OPENING,
-        *_list_counts(),
-        "",
-        "| type | what it does | inputs | outputs | package | node | distributions |",
-        "|---|---|---|---|---|---|---|",
+        "| type | what it does | package | distributions |",
+        "|---|---|---|---|",
     ]
     for name, form_by_distro in sorted(forms.items()):
-        columns = [_merge_column(column, form_by_distro) for column in range(5)]
+        columns = [_merge_column(column, form_by_distro) for column in range(2)]
         lines.append(f"| `{name}` | {' | '.join(columns)} | {_name_distros(form_by_distro)} |")
     return "\n".join(lines) + "\n"
 
@@ -88,57 +86,19 @@ def _merge_column(column: int, form_by_distro: Mapping[str, Form]) -> str:
 def _name_distros(distros: Collection[str]) -> str:
     """Return distributions in their order; of three or more that follow one another the first and the last one."""
     places = sorted(map(_ORDER.index, distros))
+    if len(places) == len(_ORDER):
+        return "all"
     if len(places) not in {1, 2} and places[-1] - places[0] == len(places) - 1:
         return f"{_ORDER[places[0]]} to {_ORDER[places[-1]]}"
     return ", ".join(_ORDER[place] for place in places)
-
-
-def _list_counts() -> Iterator[str]:
-    yield "| distribution | types | facts | types read at the released version |"
-    yield "|---|---|---|---|"
-    for distro in _ORDER:
-        types, sources = load_shipped_component_types(distro), read_shipped_sources(distro)
-        facts = sum(len(list(list_type_facts(mapping_values.get_body(entry)))) for entry in types.values())
-        fresh_types = [name for name in types if all(source.version == source.released for source in sources[name])]
-        yield f"| {distro} | {len(types)} | {facts} | {len(fresh_types)} |"
 
 
 _ORDER = ("noetic", "humble", "jazzy", "kilted", "lyrical", "rolling")
 
 
 def _describe_form(body: MappingNode) -> Form:
-    node = mapping_values.get_mapping(body, "node")
-    package, executable = (mapping_values.get_text(node, key) for key in ("package", "executable"))
-    plugin, own_name = (mapping_values.get_text(node, key) for key in ("plugin", "own_name"))
-    programs = (f"{package}, `{executable}`" if executable else package or "", f"`{plugin}`" if plugin else "")
-    return (
-        (mapping_values.get_text(body, "functionality") or "",),
-        tuple(_list_ports(body, "inputs")),
-        tuple(_list_ports(body, "outputs")),
-        tuple(filter(None, programs)),
-        (f"`{own_name}`",) if own_name else (),
-    )
-
-
-def _list_ports(body: MappingNode, side: str) -> Iterator[str]:
-    node = mapping_values.get_mapping(body, "node")
-    uses = {
-        key: use
-        for section in (("subscribes", "calls") if side == "inputs" else ("publishes", "serves"))
-        for key, _, use in mapping_values.iterate_elements(node, section)
-    }
-    for name, _, port in mapping_values.iterate_elements(body, side):
-        mark = "?" if mapping_values.get_flag(port, "optional") else ""
-        message = (mapping_values.get_text(port, "type") or "").replace("/msg/", "/")
-        use = uses.get(name, mapping_values.EMPTY_MAPPING)
-        topic = next((text for key in ("own_name", "topic", "name") for text in mapping_values.get_texts(use, key)), "")
-        parameter = mapping_values.get_text(use, "named_by")
-        words = [f"`{topic}`"] if topic not in {"", name} else []
-        yield (
-            " ".join([f"`{name}`{mark}", message, *words, *([f"by `{parameter}`"] if parameter else [])])
-            .replace("  ", " ")
-            .strip()
-        )
+    package = mapping_values.get_text(mapping_values.get_mapping(body, "node"), "package")
+    return (mapping_values.get_text(body, "functionality") or "",), (package or "",)
 
 
 PAGES: dict[Path, Callable[[], str]] = {

@@ -54,7 +54,7 @@ fixed unbound-generic: A generic type is used without the types that it is made 
 # About variants themselves.
 fixed unknown-variant: A variant is built on one that the project does not have.
 fixed circular-variant: Variants are built on one another in a circle.
-error missing-variant-part: A variant drops a key that is not there, or changes what it takes out.
+error missing-variant-part: A variant drops a key that is not there, changes what it takes out, or names something and changes nothing of it.
 warning empty-variant-selector: A word of a variant's `without` selects nothing.
 # About what a project names: chapters, pictures, files, hints, programs.
 fixed duplicate-frame: A frame is declared twice.

@@ -75,6 +75,9 @@ def prepare_signature(
     if strangers := [each for each in signers if each not in agreement.pair]:
         msg = f"`{strangers[0]}` is none of the two partners `{agreement.pair[0]}` and `{agreement.pair[1]}`"
         raise SigningError(msg)
+    if unclear := [who for who in signers.values() if not who.strip() or not who.isprintable()]:
+        msg = f'{unclear[0]!r} is no name that can stand in a line: write who signs, such as "M. Rossi"'
+        raise SigningError(msg)
     repository = find_repository(checked_project.root)
     head = resolve_revision(repository, "HEAD")
     _refuse_uncommitted(checked_project, head, file)

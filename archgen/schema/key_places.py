@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-from archgen.diagnostics import find_closest
+from archgen.diagnostics import find_closest, join_words
 from archgen.language.language_tables import OTHER_WORDS, SECTION_KINDS
 from archgen.schema.language_schema import TELLING_NOTHING, list_keys, load_schema, resolve_part
 from archgen.schema.schema_wording import add_article
@@ -117,7 +117,12 @@ def find_sibling_help(entry: MappingEntry, path: KeyPath, kind: str) -> str | No
         case ("groups", _, "components", element_id) if is_component:
             return f"it looks like a component: begin it in the column of `{element_id}`"
         case (_, element_id) if section_kind and _looks_like(entry.value, section_kind):
-            return f"it looks like {add_article(kind)} of its own: begin it in the column of `{element_id}`"
+            wrapped_keys = [f"`{key}`" for key in entry.value.entries] if isinstance(entry.value, MappingNode) else []
+            return (
+                f"write {join_words(wrapped_keys)} at `{element_id}` itself"
+                if entry.key in OTHER_WORDS.get(section_kind, ())
+                else f"it looks like {add_article(kind)} of its own: begin it in the column of `{element_id}`"
+            )
     return None
 
 

@@ -22,19 +22,44 @@ if TYPE_CHECKING:
 
 _LANGUAGE_WORDS = ("true", "false", "null", "any", "all", "none", "self")
 """Words that the pattern of ids leaves out."""
-_COMPONENT = "Component"
 _SERVED = "what a component serves is an output whose type is a service or an action: `outputs: {{NAME: PACKAGE/{part}/TYPE}}`"
 _CALLED = "what a component calls is an input that reads it: `inputs: {NAME: GROUP.COMPONENT.OUTPUT}`"
 _GIVEN = "what a component gives is an output; topics stand at nodes: `outputs: {NAME: PACKAGE/msg/TYPE}`"
 _TAKEN = "what a component takes is an input; topics stand at nodes: `inputs: {NAME: GROUP.COMPONENT.OUTPUT}`"
-_ROS_WORDS = {
+_COMPONENT_WORDS = {
     **dict.fromkeys(("service", "services", "serves", "provides", "servers"), _SERVED.format(part="srv")),
     **dict.fromkeys(("action", "actions", "action_servers"), _SERVED.format(part="action")),
     **dict.fromkeys(("call", "calls", "clients", "service_clients", "action_clients"), _CALLED),
     **dict.fromkeys(("publish", "publishes", "publishers", "topics"), _GIVEN),
     **dict.fromkeys(("subscribe", "subscribes", "subscribers", "subscriptions"), _TAKEN),
 }
-"""What users of ROS write at a component, and what says it there."""
+_NODE_WORDS = {
+    **dict.fromkeys(
+        ("topics", "interfaces"), "a node sends and hears: `publishes: {PORT: /topic}`, `subscribes: {PORT: /topic}`"
+    ),
+    **dict.fromkeys(
+        ("depends", "depend", "dependencies", "exec_depend"),
+        "on which packages it depends follows from what it publishes, subscribes to, serves and calls",
+    ),
+    **dict.fromkeys(
+        ("launch", "launch_file", "launch_files"),
+        "what a launch file starts is imported by `archgen import launch FILE`; to start the file itself, write "
+        "`kind: program, command: [ros2, launch, PACKAGE, FILE]`",
+    ),
+}
+_HOST_WORDS = {
+    **dict.fromkeys(("runs", "nodes", "programs"), "a node says where it runs: `nodes: {NODE: {host: HOST}}`"),
+    **dict.fromkeys(
+        ("components", "groups"), "the nodes of components say where they run: `nodes: {NODE: {host: HOST}}`"
+    ),
+    **dict.fromkeys(
+        ("gpu", "gpus", "fpga"), "what nodes share beside the cores is a resource: `resources: {gpu: HOST}`"
+    ),
+}
+_SENTENCES_BY_TITLE = {
+    "Component": _COMPONENT_WORDS, "Component type": _COMPONENT_WORDS, "ROS node": _NODE_WORDS, "Host": _HOST_WORDS,
+}  # fmt: skip
+"""What people write at an element of a kind, by the kind's title in the schema, and what says it instead."""
 
 
 def diagnose_unknown_keys(
@@ -85,7 +110,7 @@ def diagnose_unknown_key(entry: MappingEntry, schema_part: dict[str, Any], path:
     # The surest first: what the key holds, then where else it is a key. Between sections one letter tells more.
     help_line = (
         _find_key_help(entry, known_keys)
-        or (_ROS_WORDS.get(entry.key) if schema_part["title"].startswith(_COMPONENT) else None)
+        or _SENTENCES_BY_TITLE.get(schema_part["title"], {}).get(entry.key)
         or key_places.find_sibling_help(entry, path, schema_part["title"])
         or (home if home and path and not meant and not _is_one_slip(entry.key, known_keys) else guess or home)
         or f"{'its keys' if path else 'the sections'} are {join_quoted(known_keys)}"

@@ -15,7 +15,7 @@ from typing import Any
 from archgen.diagnostics import AskedName, Diagnostic, Span, did_you_mean, did_you_shorten, join_words, odd_characters
 from archgen.frozen import NamedTuple
 from archgen.language.key_paths import find_part
-from archgen.language.language_tables import OFFERS, SECTION_KINDS
+from archgen.language.language_tables import OFFERS, OTHER_WORDS, SECTION_KINDS
 from archgen.schema.language_schema import load_schema, resolve_part
 from archgen.schema.quantity_wording import clip_text, describe_wrong_quantity, find_dimension
 from archgen.syntax.yaml_tree import MappingEntry, MappingNode, ScalarNode, SequenceNode, YamlNode
@@ -165,6 +165,9 @@ def diagnose_wrong_value(kind: str, place: ErrorPlace, schema_part: dict[str, An
     span = node.span
     if isinstance(node, MappingNode | SequenceNode) and place.entry is not None and node is place.entry.value:
         span = place.entry.key_span
+    if schema_part.get("title") == "Performance indicator" and isinstance(node, ScalarNode) and place.entry is not None:
+        meant = OTHER_WORDS["indicator"].get(str(place.path[-1]))
+        help_line, span = (f"did you mean `{meant}`?", place.entry.key_span) if meant else (help_line, span)
     is_guessed = help_line is not None and help_line.startswith("did you mean")
     asked_name = _find_asked_name(place, schema_part) if rule == "wrong-value" and not is_guessed else None
     return Diagnostic(rule, message, span, help=help_line, element=element_of_path(place.path), asked_name=asked_name)

@@ -9,7 +9,7 @@ from __future__ import annotations
 import unicodedata
 from typing import TYPE_CHECKING
 
-from archgen.diagnostics import Diagnostic, diagnose_repetition
+from archgen.diagnostics import Diagnostic, Severity, diagnose_repetition
 from archgen.frozen import dataclass, field, replace
 from archgen.language.key_paths import SLICE
 from archgen.language.language_tables import DATA_PARTS, ENTRIES, KEYS, LISTED_PARTS, SHORT_KEYS
@@ -115,7 +115,30 @@ def _normalise_changes(document: YamlDocument) -> Iterator[Diagnostic]:
     for variant in list_entries(document.root, "variants"):
         changes = find_value(variant.value, "changes")
         if isinstance(changes, MappingNode):
+            empty_keys = list(_list_empty_keys(changes))
             yield from normalise_document(replace(document, root=changes))
+            for path, entry, holder in empty_keys:
+                if entry.key not in holder.entries:  # an empty parameter is a value, an empty element is an element
+                    holder.declares &= bool(holder.entries)
+                    yield Diagnostic(
+                        "missing-variant-part",
+                        f"`{entry.key}` is empty, which changes nothing in a variant",
+                        entry.key_span,
+                        Severity.WARNING,
+                        help=f"to take it out, write `drop: [{'.'.join((*path, entry.key))}]` in the variant instead",
+                        element=variant.key,
+                    )
+
+
+def _list_empty_keys(
+    mapping: MappingNode, path: tuple[str, ...] = ()
+) -> Iterator[tuple[tuple[str, ...], MappingEntry, MappingNode]]:
+    """Yield the keys without a value, each with the keys that lead to it and the mapping that holds it."""
+    for entry in mapping:
+        if isinstance(entry.value, MappingNode):
+            yield from _list_empty_keys(entry.value, (*path, entry.key))
+        elif isinstance(entry.value, ScalarNode) and entry.value.value is None:
+            yield path, entry, mapping
 
 
 def _list_accepted(accepted_entry: MappingEntry) -> SequenceNode:

@@ -4,7 +4,12 @@ from __future__ import annotations
 
 from pathlib import Path
 
+import pytest
+
 from tests.cli.conftest import Run
+
+ROOT = Path(__file__).resolve().parents[2]
+SHIPPED_PROJECTS = [ROOT / "example_ramcip", *sorted(path.parent for path in ROOT.glob("examples/**/archgen.yaml"))]
 
 UNTIDY = "archgen: 1\ngroups:\n    sensing:\n        components:\n            lidar: { outputs: {scan: Scan} }\n"
 TIDY = "archgen: 1\ngroups:\n  sensing:\n    components:\n      lidar: {outputs: {scan: Scan}}\n"
@@ -21,6 +26,12 @@ def test_it_checks_shows_and_writes(tmp_path: Path, run: Run) -> None:
     assert (written.status, "3 lines laid out anew" in written.out) == (0, True)
     assert file.read_text() == TIDY
     assert run("fmt", tmp_path).out == run("fmt", "--check", file).out == "all files are as they should be\n"
+
+
+@pytest.mark.parametrize("project", SHIPPED_PROJECTS, ids=lambda path: path.relative_to(ROOT).as_posix())
+def test_what_ships_is_in_the_one_style(run: Run, project: Path) -> None:
+    checked = run("fmt", "--check", project)
+    assert (checked.status, checked.out) == (0, "all files are as they should be\n")
 
 
 def test_what_it_leaves_alone_is_named(tmp_path: Path, run: Run) -> None:

@@ -200,7 +200,7 @@ def test_a_partner_gets_a_file_for_its_agreements_that_is_read_whatever_sources_
     assert (ran.status, ran.err) == (0, "")
     assert "`archgen owners --format codeowners` makes CODEOWNERS anew" in ran.out
     added = changed(before, ramcip)
-    assert added["archgen.yaml"] == '  inria: {title: "Inria: Nancy", reviewers: "@inria/nancy"}'
+    assert added["archgen.yaml"] == '  inria:\n    title: "Inria: Nancy"\n    reviewers: "@inria/nancy"'
     assert added["review/inria.yaml"].startswith("# What Inria: Nancy agrees on. ")
     assert added["review/inria.yaml"].endswith("\nreview:\n  accepted:")
     assert [finding for finding in check_project(ramcip).findings if "inria" in str(finding)] == []

@@ -50,6 +50,8 @@ def test_one_alone_is_told_that_it_binds_nobody(run: Run, robot: Path) -> None:
         (("a", "x", *BOTH), "there is no partner `x`"),
         (("a", "c", "--by", "a", "Ada"), "nothing flows between `a` and `c`"),
         (("a", "b", "--by", "c", "Cleo"), "`c` is none of the two partners"),
+        (("a", "b", "--by", "a", "Ada\nand Bob"), "'Ada\\nand Bob' is no name that can stand in a line"),
+        (("a", "b", "--by", "a", " "), "' ' is no name"),
         (("a", "b", *BOTH, "--date", "tomorrow"), "`tomorrow` is no date"),
     ],
 )

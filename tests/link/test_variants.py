@@ -359,3 +359,39 @@ def test_where_a_finding_of_the_project_does_not_hold_is_a_note(tmp_path: Path, 
     checked = check(tmp_path, lines, robot)
     found = [each for each in checked.findings if each.rule == "missing-detail" and "driving.drive" in each.message]
     assert [phrase_absence(each) for each in found] == ([note] if removing != "a b c d" else [])
+
+
+@pytest.mark.parametrize(
+    ("body", "removal"),
+    [
+        ("changes: {nodes: {laser: ~}}", "`drop: [nodes.laser]`"),
+        ("changes: {nodes: {laser: {}}}", "`drop: [nodes.laser]`"),
+        ("changes: {hosts: {spare: }}", "`drop: [hosts.spare]`"),
+        ("changes: {groups: {sensing: {components: {lidar: ~}}}}", "`without: sensing.lidar`"),
+        ("changes: {nodes: {laser: {host: ~}}}", "`drop: [nodes.laser.host]`"),
+        ("changes: {groups: {sensing: {components: {lidar: {title: }}}}}", "`drop: [groups.sensing.components.lidar.title]`"),
+    ],
+)  # fmt: skip
+def test_what_is_empty_changes_nothing_and_is_told_with_what_takes_it_out(
+    tmp_path: Path, body: str, removal: str
+) -> None:
+    findings = [
+        each for each in check(tmp_path, f"  sim: {{{body}}}\n").findings if each.rule == "missing-variant-part"
+    ]
+    assert [each.help and removal in each.help for each in findings] == [True]
+    key, _, written = removal.strip("`").partition(": ")
+    followed = check(tmp_path, f"  sim: {{{key}: {written}}}\n").findings
+    assert [each for each in followed if each.rule in {"missing-variant-part", "empty-variant-selector"}] == []
+
+
+@pytest.mark.parametrize(
+    "body",
+    [
+        "without: tag:hardware, changes: {groups: {sensing: {components: {lidar: ~}}}}",
+        "changes: {nodes: {laser: {parameters: {x: ~}}, another: {implements: lidar}}, hosts: {new_pc: }}",
+    ],
+)
+def test_what_is_empty_and_says_something_is_not_told(tmp_path: Path, body: str) -> None:
+    """A component that stays, a parameter without a value, an element of its own."""
+    findings = check(tmp_path, f"  sim: {{{body}}}\n").findings
+    assert [each.message for each in findings if each.rule == "missing-variant-part"] == []

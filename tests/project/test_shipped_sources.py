@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import datetime as dt
 import re
-import runpy
 
 import pytest
 
@@ -14,9 +13,7 @@ from archgen.model.known_interfaces import KNOWN_DISTROS
 from archgen.project.library_reading import load_shipped_component_types
 from archgen.project.shipped_sources import SOURCE_KINDS, ShippedSource, read_shipped_sources
 from archgen.syntax.yaml_parser import parse_yaml
-from tests.running import ROOT
-
-list_type_facts = runpy.run_path(str(ROOT / "tools" / "shipped_facts.py"))["list_type_facts"]
+from tests.project.shipped_facts import list_type_facts
 
 
 @pytest.mark.parametrize("distro", KNOWN_DISTROS)

@@ -66,6 +66,14 @@ def _component(text: str) -> str:
         ("variants: {v: {changes: {package: urg}}}", "write it as `nodes: {NODE: {package: ...}}`"),
         ("policies: {p: {forbid: {from: a, to: b, of: c}}}", "a flow has two ends: `forbid: {from: ..., to: ...}`; `of` "),
         ("policies: {p: {require: {of: a, inputs_from: b, from: c}}}", "`require` asks something of elements: `require: "),
+        ("nodes: {n: {program: {package: urg, executable: x}}}", "write `package` and `executable` at `n` itself"),
+        ("nodes: {n: {node: usb_cam_node_exe}}", "did you mean `executable`?"),
+        ("nodes: {n: {topics: {image: /image}}}", "a node sends and hears: `publishes: {PORT: /topic}`"),
+        ("nodes: {n: {depends: [opencv]}}", "on which packages it depends follows from what it publishes"),
+        ("nodes: {n: {launch: arm.launch.py}}", "what a launch file starts is imported by `archgen import launch FILE`"),
+        ("hosts: {pc: {runs: [n]}}", "a node says where it runs: `nodes: {NODE: {host: HOST}}`"),
+        ("hosts: {pc: {gpu: true}}", "what nodes share beside the cores is a resource: `resources: {gpu: HOST}`"),
+        ("chains: {c: {through: [a, b], max: 300}}", "did you mean `deadline`?"),
         ("nodes: {n: {m: {package: urg}}}", "it looks like a ROS node of its own: begin it in the column of `n`"),
     ],
 )  # fmt: skip
@@ -73,6 +81,12 @@ def test_a_key_at_the_wrong_level_is_told_where_it_belongs(text: str, help_line:
     (mistake,) = find_mistakes(text)
     assert " unknown-key: " in mistake
     assert mistake.partition(" | ")[2].startswith(help_line)
+
+
+def test_a_figure_of_performance_by_another_word_is_told_at_its_key() -> None:
+    (mistake,) = find_mistakes(_component("performance: {latency: 120ms}"))
+    assert " wrong-type: " in mistake
+    assert mistake.partition(" | ")[2] == "did you mean `execution_time`?"
 
 
 def test_several_keys_of_one_other_kind_are_one_mistake() -> None:

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 
 from archgen.compose import expand_project
 from archgen.compose.variant_overlay import MissingKey, drop_key, lay_changes
-from archgen.diagnostics import Diagnostic, did_you_mean
+from archgen.diagnostics import Diagnostic, Severity, did_you_mean
 from archgen.frozen import dataclass
 from archgen.language.language_tables import DECLARING_KEYS, KEYS, SECTION_KINDS
 from archgen.link import mapping_values
@@ -70,7 +70,7 @@ class VariantLayer:
             laid = self._drop_path(laid, scalar, variant.key, diagnostics)
         changes = mapping_values.get_mapping(body, "changes")
         if changes.entries:
-            targets = ChangeTargets(laid, changes, self._lost_keys)
+            targets = ChangeTargets(laid, changes, self._lost_keys, may_keep="without" in body.entries)
             diagnostics += targets.diagnostics
             laid, findings = lay_changes(laid, targets.sound, self._incomplete_libraries)
             diagnostics += [*findings, *find_incomplete(laid)]
@@ -177,11 +177,17 @@ _INSTANCE_KEYS = frozenset({"is", "same_as"})
 class ChangeTargets:
     """Sorts what a variant writes: `sound` is what has a target, or declares something new."""
 
-    def __init__(self, root: MappingNode, changes: MappingNode, lost_keys: frozenset[str]) -> None:
-        """Take the project before the changes, the changes, and what could not be read: nobody knows of its elements."""
+    def __init__(
+        self, root: MappingNode, changes: MappingNode, lost_keys: frozenset[str], *, may_keep: bool = False
+    ) -> None:
+        """Take the project before the changes, the changes, and what could not be read: nobody knows of its elements.
+
+        Components that are only named are kept from what the variant takes out, if it takes anything out (`may_keep`).
+        """
         self.diagnostics: list[Diagnostic] = []
         self._root = root
         self._lost_keys = lost_keys
+        self._may_keep = may_keep
         self.sound = changes.change_each(self._keep_sound)
 
     def _keep_sound(self, section: MappingEntry) -> MappingEntry:
@@ -190,6 +196,10 @@ class ChangeTargets:
             return section.change_each(
                 lambda group: self._keep_group(known, group) if self._is_known_group(known, group) else None
             )
+        if section.key in SECTION_KINDS:
+            for entry in mapping_values.get_body(section):
+                if entry.key in known.entries and _is_stub(entry):
+                    self._report_unchanged(entry, entry.key, f"`drop: [{section.key}.{entry.key}]`")
         if (kind := SECTION_KINDS.get(section.key, "")) in DECLARING_KEYS:
             return section.change_each(lambda entry: entry if self._is_sound(kind, known, entry) else None)
         return section
@@ -231,6 +241,8 @@ class ChangeTargets:
         def keep_part(part: MappingEntry) -> MappingEntry | None:
             part_id = f"{holder_id}.{part.key}"
             if part.key in known.entries:
+                if not self._may_keep and _is_stub(part):
+                    self._report_unchanged(part, part_id, f"`without: {part_id}`")
                 return self._keep_parts(part, mapping_values.get_body(known.entries[part.key]), part_id)
             if declares_itself(part.value) or _is_stub(part) or part.key in self._lost_keys:
                 return part
@@ -239,6 +251,18 @@ class ChangeTargets:
             return None
 
         return holder.change_keys({"components": lambda parts: parts.change_each(keep_part)})
+
+    def _report_unchanged(self, entry: MappingEntry, name: str, removal: str) -> None:
+        self.diagnostics.append(
+            Diagnostic(
+                "missing-variant-part",
+                f"a variant names `{name}` and changes nothing of it",
+                entry.key_span,
+                Severity.WARNING,
+                help=f"to leave it out, write {removal} in the variant instead; else write what differs",
+                element=name,
+            )
+        )
 
     def _report(self, entry: MappingEntry, kind: str, name: str, known_names: list[str], new_help: str) -> None:
         self.diagnostics.append(

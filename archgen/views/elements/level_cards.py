@@ -40,9 +40,7 @@ def make_component_card(lookup: Lookup, component: Component) -> ElementCard:
     """Make the card of a component that holds no others."""
     facts = _list_component_facts(component, component.role or "?", timing_words.format_short_timing(component.timing))
     architecture = lookup.architecture
-    inputs = tuple(
-        f"{port.name} <- {'; '.join(_describe_sources(lookup, port)) or '?'}" for port in component.inputs.values()
-    )
+    inputs = tuple(_describe_input(lookup, port) for port in component.inputs.values())
     outputs = tuple(
         f"{port.name} ({port.type or '?'}){_mark_deprecated(port)} -> {', '.join(_list_readers(lookup, port)) or 'nobody'}"
         for port in component.outputs.values()
@@ -94,8 +92,7 @@ def make_composed_card(lookup: Lookup, shell: Component) -> ElementCard:
     way = "".join(run.text for run in make_whole_fact(lookup, shell.id))
     facts = _list_component_facts(shell, "", timing_words.format_timing_sentence(shell.timing), way)
     inputs = tuple(
-        f"{port.name} <- {'; '.join(_describe_sources(lookup, port)) or '?'}"
-        f" => {', '.join(architecture.shell_ports[f'input {port.id}']) or 'nobody inside'}"
+        f"{_describe_input(lookup, port)} => {', '.join(architecture.shell_ports[f'input {port.id}']) or 'nobody inside'}"
         for port in shell.inputs.values()
     )
     outputs = tuple(
@@ -143,6 +140,11 @@ def make_component_type_card(lookup: Lookup, component_type: ComponentType) -> E
     return ElementCard(
         "component type", component_type.id, component_type.title, component_type.at, known_facts(facts), lists
     )
+
+
+def _describe_input(lookup: Lookup, port: Input) -> str:
+    type_note = f" ({port.type})" if port.type else ""
+    return f"{port.name}{type_note} <- {'; '.join(_describe_sources(lookup, port)) or '?'}"
 
 
 def _describe_sources(lookup: Lookup, port: Input) -> Iterator[str]:

@@ -1,4 +1,4 @@
-"""List what the component types that ship state about their packages: each fact wants a source."""
+"""What a component type that ships states about its package: for each of these facts there has to be a source."""
 
 from __future__ import annotations
 
