@@ -14,8 +14,8 @@ from archgen.timing.analysis import Analysis, ChainResult
 from archgen.timing.search.change_trials import Changes, ChangeTrials, OverrideLayer, TriesSpentError
 from archgen.timing.search.run_configurations import ORDERS, ConfigurationSpace, RunConfiguration, TriggerChoice
 
-MAX_TRIES = 60
-"""How many configurations are tried for a project."""
+MAX_TRIES, _UNASKED_TRIES = 120, 60
+"""How many configurations are tried for a project: where somebody asks, and where nobody did and it is small."""
 _SMALL_SIZE, _LEAST_TRIES = 150, 12
 """So many activities make a small project; and so many configurations are tried of the largest one that nobody asked for."""
 _KEPT_TRIES = 12
@@ -83,7 +83,7 @@ def find_short_proposal(
     """
     if not any(result.deadline and result.verdict in {"missed", "not proven"} for result in results.values()):
         return None
-    tries = max(_LEAST_TRIES, MAX_TRIES * _SMALL_SIZE // max(_SMALL_SIZE, len(analysis.system.activities)))
+    tries = max(_LEAST_TRIES, _UNASKED_TRIES * _SMALL_SIZE // max(_SMALL_SIZE, len(analysis.system.activities)))
     return find_proposal(ChangeTrials(architecture, analysis, lay_overrides, tries), results)
 
 

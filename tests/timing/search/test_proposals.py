@@ -10,7 +10,7 @@ from archgen.link.timing_overrides import apply_overrides
 from archgen.timing.chains.chain_bounds import bound_all_chains
 from archgen.timing.run_analysis import analyse_architecture
 from archgen.timing.search import proposals
-from archgen.timing.search.proposals import find_proposal
+from archgen.timing.search.proposals import find_proposal, find_short_proposal
 from archgen.timing.search.run_configurations import ConfigurationSpace, RunConfiguration
 from tests.timing.random_systems import architecture
 from tests.timing.search.late_systems import draw_late_system, propose_for
@@ -167,6 +167,18 @@ def test_triggers_may_prove_what_no_floor_forbids(seed: int, words: str) -> None
     proposal = propose_for(asked)
     assert (proposal.hopeless, proposal.best.late) == ({}, ())
     assert words in proposal.best.words
+
+
+def test_who_asks_gets_more_tries_than_who_did_not() -> None:
+    """What proves its chains is the 7th move from the best order: with half of the tries it is not found."""
+    asked = draw_late_system(247)
+    assert asked is not None
+    unasked = find_short_proposal(
+        asked, (analysis := analyse_architecture(asked)), bound_all_chains(analysis, asked), apply_overrides
+    )
+    assert unasked is not None
+    assert (unasked.best.late, unasked.is_cut) == (("c1",), True)
+    assert propose_for(asked).best.late == ()
 
 
 def test_tries_are_counted_and_the_same_each_time(monkeypatch: pytest.MonkeyPatch) -> None:
