@@ -97,9 +97,13 @@ class _Column:
 
 
 def flow_section(section: Section, pictures: Mapping[str, Picture]) -> tuple[tuple[Placed, ...], ...]:
-    """Return what stands on each slide of a section; at least one, which may be empty."""
+    """Return what stands on each slide of a section; at least one, which may be empty.
+
+    Two sections stand side by side, with the blocks of what holds them below, over the whole width.
+    """
     full = SLIDE_WIDTH - 2 * MARGIN
-    if len(section.sections) > 1:
+    sheets: list[list[Placed]] = [[]]
+    if is_split := len(section.sections) > 1:
         left = round((full - _GUTTER) * _LEFT_SHARE)
         columns = [
             (section.sections[0].blocks, _Column(MARGIN, left, _COLUMN_TEXT_SIZE, _COLUMN_CELL_SIZES)),
@@ -111,32 +115,39 @@ def flow_section(section: Section, pictures: Mapping[str, Picture]) -> tuple[tup
     else:
         blocks = (*section.blocks, *(block for each in section.sections for block in each.blocks))
         columns = [(blocks, _Column(MARGIN, full, _TEXT_SIZE, _CELL_SIZES))]
-    sheets: list[list[Placed]] = [[]]
     for column_blocks, column in columns:
-        for number, placed in _flow_largest(column_blocks, column, pictures):
-            while len(sheets) <= number:
-                sheets.append([])
-            sheets[number].append(placed)
+        _add_column(sheets, 0, _flow_largest(column_blocks, column, pictures))
+    if is_split:
+        below = _Column(MARGIN, full, _COLUMN_TEXT_SIZE, _COLUMN_CELL_SIZES)
+        top = max((each.place.top + each.place.height + _GAP for each in sheets[-1]), default=BODY_TOP)
+        _add_column(sheets, len(sheets) - 1, _flow_largest(section.blocks, below, pictures, top))
     return tuple(map(tuple, sheets))
 
 
+def _add_column(sheets: list[list[Placed]], first: int, flowed: Sequence[tuple[int, Placed]]) -> None:
+    for number, placed in flowed:
+        while len(sheets) <= first + number:
+            sheets.append([])
+        sheets[first + number].append(placed)
+
+
 def _flow_largest(
-    blocks: Sequence[Block], column: _Column, pictures: Mapping[str, Picture]
+    blocks: Sequence[Block], column: _Column, pictures: Mapping[str, Picture], top: float = BODY_TOP
 ) -> list[tuple[int, Placed]]:
     """Return what blocks become, tables in the largest type in which one slide has room, else in the smallest."""
     flowed: list[tuple[int, Placed]] = []
     for size in column.cell_sizes:
-        flowed = list(_flow_blocks(blocks, replace(column, cell_sizes=(size,)), pictures))
+        flowed = list(_flow_blocks(blocks, replace(column, cell_sizes=(size,)), pictures, top))
         if all(number == 0 for number, _ in flowed):
             break
     return flowed
 
 
 def _flow_blocks(
-    blocks: Sequence[Block], column: _Column, pictures: Mapping[str, Picture]
+    blocks: Sequence[Block], column: _Column, pictures: Mapping[str, Picture], top: float
 ) -> Iterator[tuple[int, Placed]]:
-    """Yield what blocks become, each with the number of its slide."""
-    sheet, top = 0, BODY_TOP
+    """Yield what blocks become from a height on, each with the number of its slide."""
+    sheet = 0
     for index, block in enumerate(blocks):
         follower = blocks[index + 1] if index + 1 < len(blocks) else None
         if isinstance(block, Table):
