@@ -18,6 +18,7 @@ from archgen.compare.kinds import ELEMENT_KINDS
 from archgen.compare.reshaped_components import find_reshapings
 from archgen.compare.type_edits import find_type_edits
 from archgen.diagnostics.common_wording import join_words, keep_first
+from archgen.diagnostics.natural_order import order_naturally
 from archgen.frozen import dataclass
 from archgen.model.project_settings import BREAK_CATEGORIES, BreakCategory
 
@@ -114,7 +115,7 @@ class Edit:
     @property
     def broken_partners(self) -> tuple[str, ...]:
         """Return the partners who lose something, sorted."""
-        return tuple(sorted({each.partner for each in self.breaks}))
+        return tuple(sorted({each.partner for each in self.breaks}, key=order_naturally))
 
     @property
     def break_categories(self) -> tuple[BreakCategory, ...]:

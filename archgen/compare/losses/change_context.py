@@ -20,6 +20,7 @@ from archgen.compare.review_facts import ReviewFacts
 from archgen.compare.version_pair import ElementKey, VersionPair
 from archgen.diagnostics.common_wording import join_words
 from archgen.diagnostics.diagnostic import Severity
+from archgen.diagnostics.natural_order import order_naturally
 from archgen.frozen import NamedTuple
 from archgen.model.architecture import Architecture
 from archgen.model.node import Endpoint
@@ -92,7 +93,7 @@ def tick_name(name: object) -> str:
 
 def tick_sorted_names(names: Iterable[str]) -> str:
     """Return sorted names in backticks, joined for a sentence: `a`, `b` and `c`; the surplus is counted."""
-    return tick_names(sorted(names), _MAX_NAMES)
+    return tick_names(sorted(names, key=order_naturally), _MAX_NAMES)
 
 
 def _decline_verb(verb: str, *, plural: bool) -> str:
@@ -270,7 +271,7 @@ class ChangeContext:
         category: BreakCategory,
     ) -> Iterator[PartnerLoss]:
         """Yield the losses by each change of the partners who do not own it, all with the same reason."""
-        sorted_partners = sorted(partners)
+        sorted_partners = sorted(partners, key=order_naturally)
         for change_index in indices:
             owners = self.owners_of_change(change_index)
             others = [partner for partner in sorted_partners if partner not in owners]

@@ -8,6 +8,7 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from typing import TextIO
 
 from archgen.diagnostics.diagnostic import Diagnostic, Label, Severity, phrase_severity_counts
+from archgen.diagnostics.natural_order import order_naturally
 from archgen.diagnostics.safe_text import make_visible, measure_width
 from archgen.diagnostics.source_span import SourceTexts, Span
 from archgen.diagnostics.text_columns import wrap_cell, wrap_line
@@ -264,7 +265,9 @@ def _render_file_table(findings: Sequence[Diagnostic], width: int | None) -> Ite
             counts[finding.span.file][finding.effective_severity] += 1
     if len(counts) < 2:  # noqa: PLR2004 - the excerpts name the only file
         return
-    files = sorted(counts, key=lambda file: (*(-counts[file][severity] for severity in _SEVERITIES), file))
+    files = sorted(
+        counts, key=lambda file: (*(-counts[file][severity] for severity in _SEVERITIES), order_naturally(file))
+    )
     rows = [(file, *(str(counts[file][severity] or "") for severity in _SEVERITIES)) for file in files]
     yield from format_columns(("file", "errors", "warnings", "notes"), rows[:_MAX_FILES], width).splitlines()
     if len(rows) > _MAX_FILES:

@@ -17,6 +17,7 @@ from archgen.compare.agreements import (
 from archgen.compare.key_phrases import tick_names
 from archgen.diagnostics.common_wording import join_words
 from archgen.diagnostics.diagnostic import Severity
+from archgen.diagnostics.natural_order import order_naturally
 from archgen.diagnostics.suggestions import did_you_mean
 from archgen.frozen import NamedTuple
 from archgen.model.project_settings import (
@@ -68,7 +69,7 @@ def describe_refusal(comparison: Comparison) -> str:
     """Describe who may accept what the policy refuses, in front of `write_missing_entries`; empty if nothing is refused,
     or nobody can judge that.
     """
-    partners = sorted(_find_refused_targets(comparison))
+    partners = sorted(_find_refused_targets(comparison), key=order_naturally)
     return f"mend it, or {_say_why(partners, comparison)}:" if partners else ""
 
 
@@ -218,7 +219,7 @@ def _judge_changes(comparison: Comparison) -> _Verdict:
     breaking_changes = [change for change in comparison.changes if change.breaks]
     if not breaking_changes:
         return _Verdict(None, _ALL_CLEAR)
-    partners = sorted({partner for change in breaking_changes for partner in change.broken_partners})
+    partners = sorted({name for change in breaking_changes for name in change.broken_partners}, key=order_naturally)
     categories = join_categories(each.category for change in breaking_changes for each in change.breaks)
     names = ", ".join(name_each(partners, name_partners(comparison)))
     sentence = f"{count_noun(len(breaking_changes), 'breaking change')} for {names} ({categories})"
