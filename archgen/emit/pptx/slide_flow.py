@@ -33,6 +33,8 @@ _MAX_CELL_LINES, _MAX_TEXT_LINES = 6, 10
 """Longer texts end in an ellipsis: a slide is looked at, the report has all of it."""
 _LEAST_PICTURE = 150.0
 """A picture that would be less high begins a slide."""
+_MAX_SCALE = 1.5
+"""A picture of one box is not drawn out over the slide."""
 _LEAST_SCALE = 0.55
 """A picture that a whole slide shows smaller has type that nobody reads."""
 FIGURE_SCALE = 1.9
@@ -187,7 +189,7 @@ def _flow_blocks(
 
 
 def _fit_picture(picture: Picture, column: _Column, top: float) -> float:
-    return min(column.width / picture.width, (BODY_BOTTOM - top) / picture.height)
+    return min(column.width / picture.width, (BODY_BOTTOM - top) / picture.height, _MAX_SCALE)
 
 
 def _list_paragraphs(block: Block) -> Iterator[Inlines]:
@@ -205,7 +207,7 @@ def _list_paragraphs(block: Block) -> Iterator[Inlines]:
 
 
 def _fit_text(paragraphs: Sequence[Inlines], column: _Column) -> tuple[Inlines, ...]:
-    return tuple(_cut_runs(each, column.width, column.text_size, _MAX_TEXT_LINES) for each in paragraphs)
+    return tuple(cut_runs(each, column.width, column.text_size, _MAX_TEXT_LINES) for each in paragraphs)
 
 
 def _measure_text(paragraphs: Sequence[Inlines], column: _Column) -> float:
@@ -228,7 +230,7 @@ def _count_run_lines(inlines: Inlines, width: float, size: float) -> int:
     return sum(count_lines(line, usable) for line in lines)
 
 
-def _cut_runs(inlines: Inlines, width: float, size: float, max_lines: int) -> Inlines:
+def cut_runs(inlines: Inlines, width: float, size: float, max_lines: int) -> Inlines:
     """Return runs that take at most so many lines; what is cut ends in an ellipsis."""
     kept = tuple(replace(run, text=" ".join(run.text.split("\n"))) if "\n" in run.text else run for run in inlines)
     room = sum(len(run.text) for run in kept)
@@ -276,7 +278,7 @@ def _set_table(table: Table, column: _Column, size: float) -> PlacedTable:
     has_heading = any(each.title for each in table.columns)
     rows = tuple(
         tuple(
-            _cut_runs(cell, width - 2 * SIDE_PADDING, size, _MAX_CELL_LINES)
+            cut_runs(cell, width - 2 * SIDE_PADDING, size, _MAX_CELL_LINES)
             for cell, width in zip(row, widths, strict=True)
         )
         for row in table.rows
