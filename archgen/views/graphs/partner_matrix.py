@@ -6,6 +6,7 @@ import math
 from collections import Counter
 from collections.abc import Mapping, Sequence
 
+from archgen.diagnostics.natural_order import order_naturally
 from archgen.frozen import dataclass
 from archgen.model.feedback_order import order_by_feedback
 from archgen.views.graphs.drawn_level import list_flows
@@ -228,7 +229,8 @@ def _draw_sums(exchange: _Exchange, cell: float, left: float) -> tuple[list[Shee
 def _draw_heaviest(exchange: _Exchange, left: float) -> list[SheetText]:
     texts = [SheetText(left, -9, "Most flows", bold=True)]
     heaviest = sorted(
-        (each for each in exchange.weights.items() if _REST not in each[0]), key=lambda each: (-each[1], each[0])
+        (each for each in exchange.weights.items() if _REST not in each[0]),
+        key=lambda each: (-each[1], *map(order_naturally, each[0])),
     )
     for row, ((giver, taker), weight) in enumerate(heaviest[:_HEAVIEST]):
         y = row * 29 + 8.0

@@ -129,8 +129,14 @@ class _SlideMaker:
         """Return the table of what a chain waits for, with whose each step is in place of where it is written."""
         owners = [(inline_text.to_inlines(self.printer.name_owners(term.activity)),) for term in result.terms]
         rows = tuple((row[0], *whose, *row[1:-1]) for row, whose in zip(table.rows, owners, strict=True))
-        figures = (("Waits", 0.6, "right"), ("Responds", 0.8, "right"), ("Link", 0.5, "right"))
-        columns = make_columns(("Step", 2.1), ("Whose", 1.1), *figures, ("Why", 4.4))
+        columns = make_columns(
+            ("Step", 2.1),
+            ("Whose", 1.1),
+            ("Waits", 0.6, "right"),
+            ("Responds", 0.8, "right"),
+            ("Link", 0.5, "right"),
+            ("Why", 4.4),
+        )
         whole = dataclasses.replace(table, columns=columns, rows=rows)
         return keep_columns(whole, range(len(columns) - 1)) if is_short else whole
 
