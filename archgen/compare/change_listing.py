@@ -15,6 +15,7 @@ from archgen.compare.kinds import KIND_ORDER
 from archgen.compare.match_elements import match_elements
 from archgen.compare.matched_ids import MatchedIds
 from archgen.compare.version_pair import ComparedElement, ElementKey, VersionPair
+from archgen.diagnostics.natural_order import NaturalOrder, order_naturally
 from archgen.frozen import dataclass, field, replace
 from archgen.model.architecture import Architecture
 
@@ -247,10 +248,15 @@ class DifferenceFinder:
         )
 
 
-def change_order(change: Change) -> tuple[int, str, int, str]:
+def change_order(change: Change) -> tuple[int, NaturalOrder, int, str]:
     """Return the sort key of a change: kind of element, id, what happened, key."""
     change_kinds = ("renamed", "moved", "removed", "added", "changed")
-    return KIND_ORDER[change.element_kind], change.element_id, change_kinds.index(change.kind), change.key or ""
+    return (
+        KIND_ORDER[change.element_kind],
+        order_naturally(change.element_id),
+        change_kinds.index(change.kind),
+        change.key or "",
+    )
 
 
 def list_changes(before: ArchitectureVersion, after: ArchitectureVersion) -> tuple[Change, ...]:

@@ -9,6 +9,7 @@ from archgen.compare.connection_maps import ConnectionMap
 from archgen.compare.element_sentences import find_outer_messages
 from archgen.compare.kinds import Effect, find_effect
 from archgen.compare.version_pair import ComparedElement, ElementKey, VersionPair
+from archgen.diagnostics.natural_order import order_naturally
 
 _MEANING_KEYS = frozenset({"", "type", "description"})
 _OUTPUT_TIMING = "timing.outputs."
@@ -36,7 +37,7 @@ def find_concerned_owners(
     }
     for change in _walk_changes(changes):
         owner_ids.update(_find_affected(change, versions, elements_by_own_id))
-    return tuple(sorted(owner_ids))
+    return tuple(sorted(owner_ids, key=order_naturally))
 
 
 def _find_affected(

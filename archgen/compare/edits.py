@@ -17,7 +17,7 @@ from archgen.compare.key_phrases import compare_field_lines, tick_names
 from archgen.compare.kinds import ELEMENT_KINDS
 from archgen.compare.reshaped_components import find_reshapings
 from archgen.compare.type_edits import find_type_edits
-from archgen.diagnostics import join_words, keep_first
+from archgen.diagnostics import join_words, keep_first, order_naturally
 from archgen.frozen import dataclass
 from archgen.model.project_settings import BREAK_CATEGORIES, BreakCategory
 
@@ -114,7 +114,7 @@ class Edit:
     @property
     def broken_partners(self) -> tuple[str, ...]:
         """Return the partners who lose something, sorted."""
-        return tuple(sorted({each.partner for each in self.breaks}))
+        return tuple(sorted({each.partner for each in self.breaks}, key=order_naturally))
 
     @property
     def break_categories(self) -> tuple[BreakCategory, ...]:

@@ -7,6 +7,7 @@ import inspect
 from collections import Counter
 from typing import TYPE_CHECKING
 
+from archgen.diagnostics.natural_order import NaturalOrder, order_naturally
 from archgen.diagnostics.source_span import Span
 from archgen.frozen import NamedTuple, dataclass, replace
 
@@ -90,9 +91,9 @@ class Diagnostic:
         return self.severity or Severity.ERROR
 
     @property
-    def sort_key(self) -> tuple[str, int, int, str, str]:
+    def sort_key(self) -> tuple[NaturalOrder, int, int, str, str]:
         """The sort key: file, line, column, rule, message."""
-        return (self.span.file, self.span.line, self.span.column, self.rule, self.message)
+        return (order_naturally(self.span.file), self.span.line, self.span.column, self.rule, self.message)
 
 
 @dataclass(frozen=True, slots=True)

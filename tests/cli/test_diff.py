@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 from pathlib import Path
 
 import jsonschema_rs
@@ -244,3 +245,18 @@ def test_a_tree_of_git_is_a_version(run: Run, tmp_path: Path) -> None:
     assert run("diff", "main", f"main...{tree[:8]}", "-C", folder).status == 2
     blob = git_run(folder, "rev-parse", "main:archgen.yaml")
     assert "there is no revision" in run("diff", "main", blob, "-C", folder).err
+
+
+def test_groups_and_partners_stand_in_the_order_in_which_people_count(run: Run, tmp_path: Path) -> None:
+    groups = "".join(
+        f"  g{at}: {{owner: p{at}, components: {{c: {{outputs: {{o: T}}, timing: {{rate: 5 Hz}}}}}}}}\n"
+        for at in (10, 2, 1)
+    )
+    partners = ", ".join(f"p{at}: {{title: P {at}}}" for at in (1, 2, 10))
+    text = f"project: {{title: Row}}\npartners: {{{partners}}}\ntypes: {{T: std_msgs/msg/Bool}}\ngroups:\n{groups}"
+    row = tmp_path / "row"
+    repository(row, {"archgen.yaml": text})
+    (row / "archgen.yaml").write_text(text.replace("5 Hz", "4 Hz"), encoding="utf-8")
+    told = run("diff", "HEAD", "-C", row, "--format", "markdown").out
+    assert re.findall(r"g\d+(?=\.c)", told)[:3] == ["g1", "g2", "g10"]
+    assert told.index("P 2") < told.index("P 10")

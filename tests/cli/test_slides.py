@@ -81,3 +81,22 @@ def test_of_forty_partners_and_nine_chains_each_is_there(run: Run, tmp_path: Pat
     assert "The first 8 of 9 have a slide of their own" in slides["Does it react in time?"]
     assert all(f"K{at}" in slides["Does it react in time?"] for at in range(9))
     assert len({f"K{at}" for at in range(9)} & set(slides)) == 8
+
+
+@pytest.mark.parametrize(("count", "has_reasons"), [(3, True), (8, False)])
+def test_the_steps_of_a_chain_fill_its_slide(run: Run, tmp_path: Path, *, count: int, has_reasons: bool) -> None:
+    first = "c0: {outputs: {o: T}, timing: {rate: 10 Hz, wcet: 1 ms}}"
+    later = "c{0}: {{inputs: {{i: c{1}.o}}, outputs: {{o: T}}, timing: {{rate: 10 Hz, wcet: 1 ms}}}}"
+    components = ", ".join([first, *(later.format(at, at - 1) for at in range(1, count))])
+    text = "project: {title: Row}\npartners: {ada: {title: Ada}}\ntypes: {T: std_msgs/msg/Bool}\nrequirements: {R-1: It stops at once}\n"
+    text += f"groups: {{g: {{owner: ada, components: {{{components}}}}}}}\n"
+    text += f"chains: {{stop: {{through: [g.c0, g.c{count - 1}], deadline: 3 s, requirements: [R-1]}}}}\n"
+    assert run("slides", _write(tmp_path / "row", text), "-o", tmp_path / "s.pptx").status == 0
+    (slide,) = [each for each in pptx.Presentation(str(tmp_path / "s.pptx")).slides if each.shapes.title.text == "Stop"]
+    (table,) = [shape for shape in slide.shapes if shape.has_table]
+    (picture,) = [shape for shape in slide.shapes if not shape.has_text_frame and not shape.has_table]
+    rows = [[cell.text for cell in row.cells] for row in table.table.rows]
+    assert [(row[0], row[1]) for row in rows[1:]] == [(f"c{at}", "Ada") for at in range(count)]
+    assert (rows[0][-1] == "Why") is has_reasons
+    assert (table.left < picture.left + picture.width) is has_reasons
+    assert "R-1 It stops at once" in _read(tmp_path / "s.pptx")["Stop"]

@@ -18,7 +18,7 @@ from archgen.compare.key_phrases import name_partner, shorten_text, tick_names
 from archgen.compare.matched_ids import MatchedIds
 from archgen.compare.review_facts import ReviewFacts
 from archgen.compare.version_pair import ElementKey, VersionPair
-from archgen.diagnostics import Severity, join_words
+from archgen.diagnostics import Severity, join_words, order_naturally
 from archgen.frozen import NamedTuple
 from archgen.model.architecture import Architecture
 from archgen.model.node import Endpoint
@@ -91,7 +91,7 @@ def tick_name(name: object) -> str:
 
 def tick_sorted_names(names: Iterable[str]) -> str:
     """Return sorted names in backticks, joined for a sentence: `a`, `b` and `c`; the surplus is counted."""
-    return tick_names(sorted(names), _MAX_NAMES)
+    return tick_names(sorted(names, key=order_naturally), _MAX_NAMES)
 
 
 def _decline_verb(verb: str, *, plural: bool) -> str:
@@ -269,7 +269,7 @@ class ChangeContext:
         category: BreakCategory,
     ) -> Iterator[PartnerLoss]:
         """Yield the losses by each change of the partners who do not own it, all with the same reason."""
-        sorted_partners = sorted(partners)
+        sorted_partners = sorted(partners, key=order_naturally)
         for change_index in indices:
             owners = self.owners_of_change(change_index)
             others = [partner for partner in sorted_partners if partner not in owners]

@@ -33,6 +33,7 @@ from archgen.emit.pptx.slide_flow import (
     PlacedPicture,
     PlacedTable,
     PlacedText,
+    cut_runs,
 )
 from archgen.emit.pptx.slide_template import find_layout, has_light_text, open_template, scale_slide
 from archgen.emit.state_colours import CHANGE_COLOURS, MUTED_COLOUR, STATUS_COLOURS
@@ -45,6 +46,7 @@ _EMU_PER_POINT = 12_700
 _INK, _LINE, _HEADING_FILL, _ACCENT = "1A2129", "C9D1D8", "EEF2F5", "1F6FB5"
 _TITLE_SIZE, _LONG_TITLE_SIZE, _COVER_SIZE = 26, 18, 40
 _LONG_TITLE, _MAX_TITLE, _MAX_COVER_TITLE = 58, 170, 120
+_MAX_TITLE_LINES = 2
 _FOOTER_SIZE = 9
 _MAX_FACT = 150
 _CODE_FONT = "Consolas"
@@ -184,6 +186,7 @@ class SlideDrawing:
         runs = (Text(text, strong=not self._has_template), *((Text(f"  {number}", muted=True),) if number else ()))
         sizes = (_COVER_SIZE, _TITLE_SIZE) if is_cover else (_TITLE_SIZE, _LONG_TITLE_SIZE)
         size = sizes[0] if len(text) <= _LONG_TITLE else sizes[1]
+        runs = cut_runs(runs, SLIDE_WIDTH - 4 * MARGIN, size, _MAX_TITLE_LINES)
         _write_paragraphs(shape.text_frame, (runs,), size, colours=self._colours)
 
     def _add_picture(self, slide: Any, placed: PlacedPicture) -> None:  # noqa: ANN401 - as python-pptx gives it

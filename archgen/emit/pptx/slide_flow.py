@@ -33,6 +33,8 @@ _MAX_CELL_LINES, _MAX_TEXT_LINES = 6, 10
 """Longer texts end in an ellipsis: a slide is looked at, the report has all of it."""
 _LEAST_PICTURE = 150.0
 """A picture that would be less high begins a slide."""
+_MAX_SCALE = 1.5
+"""A picture of one box is not drawn out over the slide."""
 _LEAST_SCALE = 0.55
 """A picture that a whole slide shows smaller has type that nobody reads."""
 FIGURE_SCALE = 1.9
@@ -97,9 +99,13 @@ class _Column:
 
 
 def flow_section(section: Section, pictures: Mapping[str, Picture]) -> tuple[tuple[Placed, ...], ...]:
-    """Return what stands on each slide of a section; at least one, which may be empty."""
+    """Return what stands on each slide of a section; at least one, which may be empty.
+
+    Two sections stand side by side, with the blocks of what holds them below, over the whole width.
+    """
     full = SLIDE_WIDTH - 2 * MARGIN
-    if len(section.sections) > 1:
+    sheets: list[list[Placed]] = [[]]
+    if is_split := len(section.sections) > 1:
         left = round((full - _GUTTER) * _LEFT_SHARE)
         columns = [
             (section.sections[0].blocks, _Column(MARGIN, left, _COLUMN_TEXT_SIZE, _COLUMN_CELL_SIZES)),
@@ -111,32 +117,39 @@ def flow_section(section: Section, pictures: Mapping[str, Picture]) -> tuple[tup
     else:
         blocks = (*section.blocks, *(block for each in section.sections for block in each.blocks))
         columns = [(blocks, _Column(MARGIN, full, _TEXT_SIZE, _CELL_SIZES))]
-    sheets: list[list[Placed]] = [[]]
     for column_blocks, column in columns:
-        for number, placed in _flow_largest(column_blocks, column, pictures):
-            while len(sheets) <= number:
-                sheets.append([])
-            sheets[number].append(placed)
+        _add_column(sheets, 0, _flow_largest(column_blocks, column, pictures))
+    if is_split:
+        below = _Column(MARGIN, full, _COLUMN_TEXT_SIZE, _COLUMN_CELL_SIZES)
+        top = max((each.place.top + each.place.height + _GAP for each in sheets[-1]), default=BODY_TOP)
+        _add_column(sheets, len(sheets) - 1, _flow_largest(section.blocks, below, pictures, top))
     return tuple(map(tuple, sheets))
 
 
+def _add_column(sheets: list[list[Placed]], first: int, flowed: Sequence[tuple[int, Placed]]) -> None:
+    for number, placed in flowed:
+        while len(sheets) <= first + number:
+            sheets.append([])
+        sheets[first + number].append(placed)
+
+
 def _flow_largest(
-    blocks: Sequence[Block], column: _Column, pictures: Mapping[str, Picture]
+    blocks: Sequence[Block], column: _Column, pictures: Mapping[str, Picture], top: float = BODY_TOP
 ) -> list[tuple[int, Placed]]:
     """Return what blocks become, tables in the largest type in which one slide has room, else in the smallest."""
     flowed: list[tuple[int, Placed]] = []
     for size in column.cell_sizes:
-        flowed = list(_flow_blocks(blocks, replace(column, cell_sizes=(size,)), pictures))
+        flowed = list(_flow_blocks(blocks, replace(column, cell_sizes=(size,)), pictures, top))
         if all(number == 0 for number, _ in flowed):
             break
     return flowed
 
 
 def _flow_blocks(
-    blocks: Sequence[Block], column: _Column, pictures: Mapping[str, Picture]
+    blocks: Sequence[Block], column: _Column, pictures: Mapping[str, Picture], top: float
 ) -> Iterator[tuple[int, Placed]]:
-    """Yield what blocks become, each with the number of its slide."""
-    sheet, top = 0, BODY_TOP
+    """Yield what blocks become from a height on, each with the number of its slide."""
+    sheet = 0
     for index, block in enumerate(blocks):
         follower = blocks[index + 1] if index + 1 < len(blocks) else None
         if isinstance(block, Table):
@@ -176,7 +189,7 @@ def _flow_blocks(
 
 
 def _fit_picture(picture: Picture, column: _Column, top: float) -> float:
-    return min(column.width / picture.width, (BODY_BOTTOM - top) / picture.height)
+    return min(column.width / picture.width, (BODY_BOTTOM - top) / picture.height, _MAX_SCALE)
 
 
 def _list_paragraphs(block: Block) -> Iterator[Inlines]:
@@ -194,7 +207,7 @@ def _list_paragraphs(block: Block) -> Iterator[Inlines]:
 
 
 def _fit_text(paragraphs: Sequence[Inlines], column: _Column) -> tuple[Inlines, ...]:
-    return tuple(_cut_runs(each, column.width, column.text_size, _MAX_TEXT_LINES) for each in paragraphs)
+    return tuple(cut_runs(each, column.width, column.text_size, _MAX_TEXT_LINES) for each in paragraphs)
 
 
 def _measure_text(paragraphs: Sequence[Inlines], column: _Column) -> float:
@@ -217,7 +230,7 @@ def _count_run_lines(inlines: Inlines, width: float, size: float) -> int:
     return sum(count_lines(line, usable) for line in lines)
 
 
-def _cut_runs(inlines: Inlines, width: float, size: float, max_lines: int) -> Inlines:
+def cut_runs(inlines: Inlines, width: float, size: float, max_lines: int) -> Inlines:
     """Return runs that take at most so many lines; what is cut ends in an ellipsis."""
     kept = tuple(replace(run, text=" ".join(run.text.split("\n"))) if "\n" in run.text else run for run in inlines)
     room = sum(len(run.text) for run in kept)
@@ -265,7 +278,7 @@ def _set_table(table: Table, column: _Column, size: float) -> PlacedTable:
     has_heading = any(each.title for each in table.columns)
     rows = tuple(
         tuple(
-            _cut_runs(cell, width - 2 * SIDE_PADDING, size, _MAX_CELL_LINES)
+            cut_runs(cell, width - 2 * SIDE_PADDING, size, _MAX_CELL_LINES)
             for cell, width in zip(row, widths, strict=True)
         )
         for row in table.rows

@@ -118,7 +118,8 @@ class SiteNavigation:
             hidden_count = len(self.children[list_name]) - len(items)
             listing = self.pages.get("page:groups") if kind == "groups" else None
             target, place = (listing.path, "one page") if listing else (self.start, "the start page")
-            items.append(f'<li><a href="{root}{target}">{hidden_count} more on {place}</a></li>')
+            count = f"{hidden_count} more" if items else f"All {hidden_count}"
+            items.append(f'<li><a href="{root}{target}">{count} on {place}</a></li>')
         heading = f"<h2>{escape_html(title)}</h2>\n" if title else ""
         return f"{heading}<ul>\n{NEWLINE.join(items)}\n</ul>" if items else ""
 

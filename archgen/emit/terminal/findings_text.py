@@ -15,6 +15,7 @@ from archgen.diagnostics import (
     Span,
     make_visible,
     measure_width,
+    order_naturally,
     phrase_severity_counts,
 )
 from archgen.diagnostics.text_columns import wrap_cell, wrap_line
@@ -271,7 +272,9 @@ def _render_file_table(findings: Sequence[Diagnostic], width: int | None) -> Ite
             counts[finding.span.file][finding.effective_severity] += 1
     if len(counts) < 2:  # noqa: PLR2004 - the excerpts name the only file
         return
-    files = sorted(counts, key=lambda file: (*(-counts[file][severity] for severity in _SEVERITIES), file))
+    files = sorted(
+        counts, key=lambda file: (*(-counts[file][severity] for severity in _SEVERITIES), order_naturally(file))
+    )
     rows = [(file, *(str(counts[file][severity] or "") for severity in _SEVERITIES)) for file in files]
     yield from format_columns(("file", "errors", "warnings", "notes"), rows[:_MAX_FILES], width).splitlines()
     if len(rows) > _MAX_FILES:

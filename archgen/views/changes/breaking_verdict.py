@@ -15,7 +15,7 @@ from archgen.compare.agreements import (
     list_agreement_targets,
 )
 from archgen.compare.key_phrases import tick_names
-from archgen.diagnostics import Severity, did_you_mean, join_words
+from archgen.diagnostics import Severity, did_you_mean, join_words, order_naturally
 from archgen.frozen import NamedTuple
 from archgen.model.project_settings import (
     BREAK_CATEGORIES,
@@ -66,7 +66,7 @@ def describe_refusal(comparison: Comparison) -> str:
     """Describe who may accept what the policy refuses, in front of `write_missing_entries`; empty if nothing is refused,
     or nobody can judge that.
     """
-    partners = sorted(_find_refused_targets(comparison))
+    partners = sorted(_find_refused_targets(comparison), key=order_naturally)
     return f"mend it, or {_say_why(partners, comparison)}:" if partners else ""
 
 
@@ -216,7 +216,7 @@ def _judge_changes(comparison: Comparison) -> _Verdict:
     breaking_changes = [change for change in comparison.changes if change.breaks]
     if not breaking_changes:
         return _Verdict(None, _ALL_CLEAR)
-    partners = sorted({partner for change in breaking_changes for partner in change.broken_partners})
+    partners = sorted({name for change in breaking_changes for name in change.broken_partners}, key=order_naturally)
     categories = join_categories(each.category for change in breaking_changes for each in change.breaks)
     names = ", ".join(name_each(partners, name_partners(comparison)))
     sentence = f"{count_noun(len(breaking_changes), 'breaking change')} for {names} ({categories})"

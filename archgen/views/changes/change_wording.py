@@ -10,6 +10,7 @@ from typing import Literal
 from archgen.compare import Change, Comparison
 from archgen.compare.edits import Edit, EditKind
 from archgen.compare.kinds import ELEMENT_KINDS, Effect, find_effect
+from archgen.diagnostics.natural_order import order_naturally
 from archgen.frozen import dataclass
 from archgen.views.changes.breaking_items import find_group_owner, name_owner
 from archgen.views.changes.named_elements import name_each
@@ -61,7 +62,9 @@ def group_changes(
         changes_by_heading.setdefault(
             (heading_name is not None, heading_name or change.element_id.partition(".")[0]), []
         ).append(change)
-    for is_ungrouped, heading_name in sorted(key for key in changes_by_heading if not key[0]):
+    for is_ungrouped, heading_name in sorted(
+        (key for key in changes_by_heading if not key[0]), key=lambda each: order_naturally(each[1])
+    ):
         group_owner = find_group_owner(heading_name, comparison)
         yield ChangeGroup(
             heading_name,

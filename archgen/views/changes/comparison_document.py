@@ -13,7 +13,7 @@ from archgen.compare import Change, Comparison
 from archgen.compare.edits import Edit, list_edits
 from archgen.compare.element_sentences import is_read_by_others
 from archgen.compare.figure_noise import FigureNoise
-from archgen.diagnostics import Diagnostic, Severity
+from archgen.diagnostics import Diagnostic, Severity, order_naturally
 from archgen.frozen import NamedTuple, dataclass, field
 from archgen.views.changes import breaking_verdict
 from archgen.views.changes.boundary_lines import write_boundary_lines
@@ -203,7 +203,8 @@ def describe_comparison(
         only_breaking=comparison.only_breaking,
         broken_partners=name_each(_sorted_partners(breaking_edits), partner_names),
         concerned_partners=name_each(
-            sorted({*comparison.concerned_owners, *_sorted_partners(comparison.changes)}), partner_names
+            sorted({*comparison.concerned_owners, *_sorted_partners(comparison.changes)}, key=order_naturally),
+            partner_names,
         ),
         breaking_changes=tuple(
             describe_breaking_edit(edit, comparison, partner_names, repeated_findings) for edit in breaking_edits
@@ -304,4 +305,4 @@ def _count_findings(finding_groups: Sequence[FindingGroup]) -> Iterator[str]:
 
 def _sorted_partners(changes: Iterable[Change | Edit]) -> tuple[str, ...]:
     """Return the partners for whom something breaks."""
-    return tuple(sorted({partner for change in changes for partner in change.broken_partners}))
+    return tuple(sorted({partner for change in changes for partner in change.broken_partners}, key=order_naturally))

@@ -6,6 +6,7 @@ import math
 from collections import Counter
 from collections.abc import Mapping, Sequence
 
+from archgen.diagnostics.natural_order import order_naturally
 from archgen.frozen import dataclass
 from archgen.model.feedback_order import order_by_feedback
 from archgen.views.graphs.drawn_level import list_flows
@@ -18,6 +19,8 @@ from archgen.views.picture_shapes import UPRIGHT, Sheet, SheetBar, SheetColour, 
 _MOST_ROWS, _MOST_UPRIGHT_ROWS = 24, 14
 _FEW_ROWS = 12
 """Up to here a cell is large."""
+_MOST_BOXES = 20
+"""More of them, each with more than four others, are no picture."""
 _HEAVIEST = 12
 _TITLE_CHARACTERS, _UPRIGHT_TITLE_CHARACTERS = 34, 24
 _BAR_WIDTH = 110.0
@@ -35,8 +38,10 @@ class _Exchange:
 
 
 def is_too_dense(lookup: Lookup) -> bool:
-    """Whether the groups can in no drawing have few crossings."""
-    return _count_least(lookup)[1] > FEWEST_CROSSINGS
+    """Whether the groups can in no drawing have few crossings, or are so many that nobody could follow their lines."""
+    pair_count, least = _count_least(lookup)
+    group_count = len(lookup.architecture.groups)
+    return least > FEWEST_CROSSINGS or (group_count > _MOST_BOXES and pair_count > 2 * group_count)
 
 
 def _count_least(lookup: Lookup) -> tuple[int, int]:
@@ -72,7 +77,11 @@ def draw_partner_matrix(lookup: Lookup, *, upright: bool = False) -> Sheet:
             f"Rows give, columns take, in the order in which least runs back: {back} of {count_noun(total, 'flow')}, dashed.",
             (
                 f"Why no boxes and lines: the {pair_count} pairs of {len(lookup.architecture.groups)} groups between "
-                f"which something flows cross at least {least} times in any drawing."
+                + (
+                    f"which something flows cross at least {least} times in any drawing."
+                    if least > FEWEST_CROSSINGS
+                    else "which something flows are more lines than an eye can follow."
+                )
             ),
         ),
         alt=f"{count_noun(total, 'flow')} between {len(exchange.names)}: "
@@ -220,7 +229,8 @@ def _draw_sums(exchange: _Exchange, cell: float, left: float) -> tuple[list[Shee
 def _draw_heaviest(exchange: _Exchange, left: float) -> list[SheetText]:
     texts = [SheetText(left, -9, "Most flows", bold=True)]
     heaviest = sorted(
-        (each for each in exchange.weights.items() if _REST not in each[0]), key=lambda each: (-each[1], each[0])
+        (each for each in exchange.weights.items() if _REST not in each[0]),
+        key=lambda each: (-each[1], *map(order_naturally, each[0])),
     )
     for row, ((giver, taker), weight) in enumerate(heaviest[:_HEAVIEST]):
         y = row * 29 + 8.0

@@ -20,8 +20,14 @@ from archgen.views.elements.parameter_blocks import list_equal_settings
 from archgen.views.lookup import Lookup
 from archgen.views.pages import context_pages
 from archgen.views.pages.context_pages import HOME_CRUMB, FigureFilter
-from archgen.views.shapes import Block, Markdown, Page, Paragraph, Section
-from archgen.views.timing.flow_tables import list_activities, make_flow_sections
+from archgen.views.shapes import Block, Markdown, Page, Paragraph, Section, keep_columns
+from archgen.views.tables.requirement_tables import make_requirement_table
+from archgen.views.timing.flow_tables import (
+    list_activities,
+    make_chain_share_table,
+    make_flow_sections,
+    make_partner_bullets,
+)
 from archgen.views.type_names import find_component_type
 
 _MAX_DEPTH = 2
@@ -189,9 +195,29 @@ class ComponentPages:
         # With composed components the line below the title says less.
         is_composed = any(shell.group == group.id for shell in self.lookup.architecture.shells.values())
         blocks = self.keep_drawn(make_group_blocks(self.lookup, group, () if is_composed else {"components"}))
-        section = Section(f"group:{group.id}", group.title, blocks)
+        section = Section(f"group:{group.id}", group.title, blocks, tuple(self._list_group_sections(group)))
         lead = f"Group of {inline_text.count_noun(len(group.components), 'component')}"
         return Page(f"groups/{group.id}.html", section.anchor, group.title, "groups", section, (HOME_CRUMB,), lead)
+
+    def _list_group_sections(self, group: Group) -> Iterator[Section]:
+        """Yield what the components of a group serve, which chains run through them, and whom their owners talk to."""
+        lookup, architecture = self.lookup, self.lookup.architecture
+        members = {each.id for each in lookup.shown_members(group.id)}
+        served = [
+            architecture.requirements[name]
+            for name, components in lookup.components_for_requirement.items()
+            if name in architecture.requirements and members & {each.id for each in components}
+        ]
+        if table := make_requirement_table(lookup, served):
+            yield Section(f"requirements-of:{group.id}", "Requirements", (table,))
+        nodes = {node.id: node for member in sorted(members) for node in lookup.nodes_of.get(member, ())}
+        activities = list_activities(lookup, nodes.values())
+        if chains := make_chain_share_table(lookup, group.id, group.title, activities):
+            # Between the first of its steps and the last one others may have theirs: no time is the group's alone.
+            chains = keep_columns(chains, (0, 1, 5, 6, 7))
+            yield Section(f"chains-through:{group.id}", "Chains through it", (chains,))
+        if partners := make_partner_bullets(lookup, activities):
+            yield Section(f"partners-of:{group.id}", "Who to talk to", (partners,))
 
     def _make_component_page(self, component: Component, crumbs: Crumbs) -> Page:
         blocks = self.keep_drawn(make_component_blocks(self.lookup, component, _list_repeated_facts(component)))

@@ -45,7 +45,8 @@ class MessagePages:
 
     def __init__(self, lookup: Lookup, types: Iterable[ConceptualType], topics: Iterable[Topic]) -> None:
         self._lookup = lookup
-        self._types, self._topics = tuple(types), tuple(topics)
+        self._types = tuple(types)
+        self._topics = tuple(sorted(topics, key=lambda each: order_naturally(each.name)))
         self._users = collect_messages(lookup.architecture, self._types, self._topics)
         self._types_by_message = group_values((each.message, each) for each in self._types if each.message)
         self._topics_by_message = group_values((name, each) for each in self._topics for name in each.messages)

@@ -135,7 +135,11 @@ class PageMaker:
         project = self.architecture.project
         blocks: list[Block] = list(make_figures(self.edition.drawings, "overview"))
         blocks += [Markdown(project.description)] if project.description else []
-        blocks.append(Facts(tuple(make_document_facts(self.lookup, self.edition))))
+        facts = list(make_document_facts(self.lookup, self.edition))
+        if self.edition.revision and self.edition.changes is None:
+            command = Text("archgen site --since REVISION", code=True)
+            facts.append(("What changed", (command, Text(" says it, here and on the page of each element"))))
+        blocks.append(Facts(tuple(facts)))
         if len(self.architecture.groups) <= MAX_HOME_GROUPS:
             blocks += [table] if (table := functional_tables.make_group_table(self.lookup)) else []
         section = Section("page:index", project.title, tuple(blocks))

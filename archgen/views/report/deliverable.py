@@ -168,7 +168,7 @@ class DeliverablePrinter:
         if not result.terms or self.lookup.timing is None:
             return ()
         term = find_deciding_term(result)
-        names, title = self._name_owners(term.activity), self._title_activity(term.activity)
+        names, title = self.name_owners(term.activity), self._title_activity(term.activity)
         return inline_text.to_inlines(f"{title}, {names}" if names else title)
 
     def _title_activity(self, activity_id: str) -> str:
@@ -331,7 +331,7 @@ class DeliverablePrinter:
             rows.append(
                 (
                     inline_text.to_inlines(self._title_activity(term.activity)),
-                    inline_text.to_inlines(self._name_owners(term.activity)),
+                    inline_text.to_inlines(self.name_owners(term.activity)),
                     timing_tables.duration_cell(time),
                     (Text("", pieces=step.pieces),),
                 )
@@ -342,7 +342,8 @@ class DeliverablePrinter:
             Table(f"table:chain/{result.id}", title, columns, tuple(rows), numbered=False, dense=True)
         )
 
-    def _name_owners(self, activity_id: str) -> str:
+    def name_owners(self, activity_id: str) -> str:
+        """Return the partners who own what an activity does, as people call them."""
         owners = element_references.list_activity_owners(self.lookup, activity_id)
         partners = self.architecture.partners
         return ", ".join(partners[each].title if each in partners else each for each in owners)

@@ -22,14 +22,28 @@ from archgen.views.pages.timing_chapter import make_figures
 from archgen.views.report import front_pages
 from archgen.views.report.deliverable import DeliverablePrinter
 from archgen.views.report.printed_figures import print_section_figures
-from archgen.views.shapes import Block, Inlines, Outline, Paragraph, Section, Table, Text, make_columns
-from archgen.views.timing import chain_charts
+from archgen.views.shapes import (
+    Block,
+    Facts,
+    Inlines,
+    Outline,
+    Paragraph,
+    Section,
+    Table,
+    Text,
+    keep_columns,
+    make_columns,
+)
+from archgen.views.timing import chain_charts, element_timing
 
 _MAX_CHAINS = 8
 """Chains with a slide of their own; all are in the table."""
+_MAX_STEPS_BELOW = 5
 _MAX_POINTS = 3
 """Rows of one partner among the open points."""
 _MAX_TYPES = 3
+_TOLD_BESIDE = frozenset({"verdict", "why", "advice", "latest", "requirements", "assumptions"})
+"""What the words beside a chain's picture tell already."""
 _TITLE_FACTS = ("Number", "Version", "Date", "State", "Revision")
 
 
@@ -85,19 +99,46 @@ class _SlideMaker:
             yield from self._show_chain(result)
 
     def _show_chain(self, result: ChainResult) -> Iterator[Section]:
+        """Yield the picture of a chain beside its verdict, what rests on it and what to do; below it its steps.
+
+        Below a picture of many steps is no room for them: they stand beside it then, without their reasons.
+        """
         if self.lookup.timing is None:
             return
-        title = self.architecture.chains[result.id].title
-        pictures = make_figures(self.edition.drawings, f"chains/{result.id}")
+        chain, anchor = self.architecture.chains[result.id], f"slide:chains/{result.id}"
+        pictures = tuple(make_figures(self.edition.drawings, f"chains/{result.id}"))
         verdict = Text(chain_charts.describe_chain_verdict(result, self.lookup.timing), status=result.verdict)
-        facts = [
-            Paragraph((Text(f"{name}: ", strong=True), *words))
-            for name, words in self.printer.list_chain_facts(result)
-            if words
-        ]
-        words = Section(f"slide:chains/{result.id}/words", "", (Paragraph((verdict,)), *facts))
-        parts = (Section(f"slide:chains/{result.id}/picture", "", tuple(pictures)), words) if pictures else (words,)
-        yield Section(f"slide:chains/{result.id}", title, (), parts)
+        told, *_, table = element_timing.make_chain_blocks(self.lookup, self.lookup.timing, result, _TOLD_BESIDE)
+        facts = dict(self.printer.list_chain_facts(result))
+        if chain.requirements:
+            links = (inline_text.requirement_link(self.architecture, name) for name in chain.requirements)
+            facts["Rests on it"] = inline_text.join_inlines(links, "; ")
+        stands_beside = bool(pictures) and len(result.terms) > _MAX_STEPS_BELOW
+        if isinstance(told, Facts) and not stands_beside:
+            facts |= dict(told.rows[1:])
+        lines = [Paragraph((Text(f"{name}: ", strong=True), *words)) for name, words in facts.items() if words]
+        steps = (self._list_steps(result, table, is_short=stands_beside),) if isinstance(table, Table) else ()
+        words = (Paragraph((verdict,)), *lines, *(steps if stands_beside or not pictures else ()))
+        if not pictures:
+            yield Section(anchor, chain.title, words)
+            return
+        parts = (Section(f"{anchor}/picture", "", pictures), Section(f"{anchor}/words", "", words))
+        yield Section(anchor, chain.title, () if stands_beside else steps, parts)
+
+    def _list_steps(self, result: ChainResult, table: Table, *, is_short: bool) -> Table:
+        """Return the table of what a chain waits for, with whose each step is in place of where it is written."""
+        owners = [(inline_text.to_inlines(self.printer.name_owners(term.activity)),) for term in result.terms]
+        rows = tuple((row[0], *whose, *row[1:-1]) for row, whose in zip(table.rows, owners, strict=True))
+        columns = make_columns(
+            ("Step", 2.1),
+            ("Whose", 1.1),
+            ("Waits", 0.6, "right"),
+            ("Responds", 0.8, "right"),
+            ("Link", 0.5, "right"),
+            ("Why", 4.4),
+        )
+        whole = dataclasses.replace(table, columns=columns, rows=rows)
+        return keep_columns(whole, range(len(columns) - 1)) if is_short else whole
 
     def show_hosts(self) -> Iterator[Section]:
         """Yield the picture of the hosts, and of what crosses their links."""

@@ -8,7 +8,7 @@ from __future__ import annotations
 from collections.abc import Collection, Iterable, Iterator, Sequence
 from fractions import Fraction
 
-from archgen.diagnostics import join_words
+from archgen.diagnostics import join_words, order_naturally
 from archgen.frozen import NamedTuple
 from archgen.model.node import Node
 from archgen.timing.analysis import ChainResult
@@ -320,7 +320,8 @@ def make_partner_bullets(lookup: Lookup, activities: Sequence[Activity]) -> Bull
                 if owner not in own:
                     ports.setdefault(owner, ({}, {}))[side][_port_name(port)] = None
     items = []
-    for owner, (given, taken) in ports.items():
+    for owner in sorted(ports, key=order_naturally):
+        given, taken = ports[owner]
         verbs = ("gives", given), ("takes", taken)
         words = " and ".join(f"{verb} {join_words([f'`{each}`' for each in names])}" for verb, names in verbs if names)
         items.append(

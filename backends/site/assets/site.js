@@ -270,7 +270,9 @@
   if (location.search) obeyAddress();
 
   // On a telephone the rows of a table stand below one another: title and figure, and what else there is with its name.
+  // Paper is no wider, yet has room for columns that are few.
   const narrow = matchMedia("(max-width: 44.99rem)");
+  const paper = matchMedia("print");
 
   function standRows(table) {
     const titles = [...table.tHead.rows[0].cells].map((head) => head.textContent.trim());
@@ -291,12 +293,13 @@
   const tables = [...document.querySelectorAll(".table:not(.narrow) table")].filter((table) => !table.closest(".card"));
   function arrangeRows() {
     for (const table of tables) {
-      if (narrow.matches && !table.classList.contains("stood")) standRows(table);
-      if (narrow.matches) table.classList.add("stood");
-      table.classList.toggle("as-rows", narrow.matches);
+      const stands = narrow.matches && !(paper.matches && table.tHead.rows[0].cells.length < 8);
+      if (stands && !table.classList.contains("stood")) standRows(table);
+      if (stands) table.classList.add("stood");
+      table.classList.toggle("as-rows", stands);
     }
   }
-  narrow.addEventListener("change", arrangeRows);
+  for (const medium of [narrow, paper]) medium.addEventListener("change", arrangeRows);
   arrangeRows();
 
   // A table that fits needs no box to scroll in: no stop for the Tab key, and its head stays in sight.

@@ -57,6 +57,7 @@ def test_a_long_table_goes_on_and_nothing_leaves_the_slide(words: str, rows: int
             (),
             (Section("l", "", (_table(rows, words),)), Section("r", "", (Bullets((lead.inlines,) * 40),))),
         ),
+        Section("s", "Below", (_table(rows, words),), (Section("l", "", (lead,)), Section("r", "", (lead,)))),
     ):
         sheets = flow_section(section, {})
         shown = [

@@ -220,7 +220,7 @@ def test_long_lists_are_not_repeated_on_each_page() -> None:
     groups = [other(f"g/{i}.html", f"g:{i}", f"G{i}") for i in range(61)]
     tree = tree_of(page(), parent, *topics, *groups)
     for name, entries in (
-        ("t/7.html", ["Overview", "61 more on the start page", "Topics 61", "/t7"]),
+        ("t/7.html", ["Overview", "All 61 on the start page", "Topics 61", "/t7"]),
         ("g/9.html", ["Overview", "G9", "60 more on the start page", "Topics 61"]),
     ):
         html = tree.files[name].decode()

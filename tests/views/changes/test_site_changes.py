@@ -129,8 +129,12 @@ def test_without_since_nothing_of_it_is_there(tmp_path: Path) -> None:
     assert not (tmp_path / "site" / "changes.html").exists()
     for name in ("index.html", "components/g.eye.html", "components.html", "figures/overview.svg"):
         html = read(tmp_path / "site", name)
-        assert "changed" not in html
+        # The start page says how to see it.
+        hint = "What changed</dt><dd><code>archgen site --since REVISION</code>"
+        assert (html.count("changed"), html.count(hint)) == ((1, 1) if name == "index.html" else (0, 0))
         assert "Changes" not in html
+    assert make_site(tmp_path, "--since", "HEAD").exit_code == 0
+    assert "--since REVISION" not in read(tmp_path / "site", "index.html")
 
 
 def test_a_version_is_named_as_diff_takes_it_with_the_same_words_for_mistakes(tmp_path: Path) -> None:

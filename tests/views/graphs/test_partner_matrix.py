@@ -71,3 +71,16 @@ def test_a_cell_leads_to_the_page_of_its_pair(tmp_path: Path) -> None:
     assert {bar.ref for bar in sheet.bars if bar.ref} == {
         f"pair:p{one}:p{other}" for one in range(4) for other in range(one + 1, 4)
     }
+
+
+@pytest.mark.parametrize(("groups", "is_matrix"), [(20, False), (21, True)])
+def test_more_groups_than_an_eye_can_follow_are_a_matrix(groups: int, *, is_matrix: bool, tmp_path: Path) -> None:
+    lines = ["types: {T: std_msgs/msg/Empty}", "groups:"]
+    for at in range(groups):
+        inputs = ", ".join(f"i{step}: g{(at + step) % groups}.c.o" for step in (1, 3, 7))
+        lines.append(f"  g{at}: {{components: {{c: {{inputs: {{{inputs}}}, outputs: {{o: T}}}}}}}}")
+    (tmp_path / "archgen.yaml").write_text("\n".join(lines) + "\n", "utf-8")
+    lookup = make_lookup(pipeline.check_project(tmp_path / "archgen.yaml").architecture)
+    assert is_too_dense(lookup) is is_matrix
+    drawing = make_drawings(lookup, None, "functional")["overview"]
+    assert ("more lines than an eye can follow" in " ".join(drawing.notes)) is is_matrix
