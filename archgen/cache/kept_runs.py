@@ -19,7 +19,7 @@ import sys
 import time
 from typing import TYPE_CHECKING, Any, cast
 
-from archgen.cache import find_cache_path
+from archgen.cache import SETTLED_NANOSECONDS, find_cache_path
 from archgen.installed_plugins import list_all_entries
 
 if TYPE_CHECKING:
@@ -28,8 +28,6 @@ if TYPE_CHECKING:
 _SUFFIX = ".run"
 _MOST_RUNS = 48
 _MAX_RECORD_BYTES = 32_000_000
-_SETTLED_NANOSECONDS = 2_000_000_000
-"""File systems have clocks that tick as slowly as this: what changed later may change again at the same tick."""
 _WRITING_FLAGS = os.O_WRONLY | os.O_RDWR | os.O_CREAT | os.O_TRUNC | os.O_APPEND
 _STAT, _LSTAT, _READLINK, _ACCESS = os.stat, os.lstat, os.readlink, os.access
 _SCANDIR = os.scandir
@@ -81,7 +79,7 @@ class RunKeeper:
         self._is_keepable = self._path is not None
         self._is_noting = False
         self._originals: list[tuple[Any, str, Callable[..., Any]]] = []
-        self._settled_before = time.time_ns() - _SETTLED_NANOSECONDS
+        self._settled_before = time.time_ns() - SETTLED_NANOSECONDS
 
     def repeat(self) -> int | None:
         """Say what is kept, and return the exit status; None where nothing is kept that holds today."""
