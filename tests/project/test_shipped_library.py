@@ -133,9 +133,9 @@ def test_of_some_packages_all_types_are_found_without_the_rest_of_the_files(dist
     names_by_package: dict[str, set[str]] = {}
     for (package, _), names in library_reading.index_shipped_programs(distro).items():
         names_by_package.setdefault(package, set()).update(names)
-    for package, names in names_by_package.items():
+    for package, type_names in names_by_package.items():
         found = library_reading.load_package_types(distro, frozenset({package, "nowhere"}))
-        assert names <= found.keys()
+        assert type_names <= found.keys()
         assert [*found] == [
             name
             for name, entry in types.items()
