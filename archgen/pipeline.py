@@ -57,6 +57,12 @@ class VersionCache:
         self.analysis_memory.make_room(2)
         self.part_memory = PartMemory()
 
+    def forget_old_slices(self, checked_project: CheckedProject) -> None:
+        """Forget the files as they were before: a day of editing has thousands of versions."""
+        for file, text in list(self.parsed_slices):
+            if checked_project.sources.text_of(file) != text:
+                del self.parsed_slices[file, text]
+
 
 def check_project(
     path: Path | None = None, version_cache: VersionCache | None = None, variants: Sequence[str] | None = None

@@ -6,6 +6,8 @@ import os
 
 KEPT_VERBS: tuple[str, ...] = ("check", "generate")
 """Verbs whose runs are kept: their words follow from what they read, not from the time, nor from what git or somebody at the keyboard says."""
+SETTLED_NANOSECONDS = 2_000_000_000
+"""File systems have clocks that tick as slowly as this: what changed later may change again at the same tick."""
 
 
 def find_cache_path() -> str | None:

@@ -19,7 +19,7 @@ import sys
 import time
 from typing import TYPE_CHECKING, Any, cast
 
-from archgen.cache import find_cache_path
+from archgen.cache import SETTLED_NANOSECONDS, find_cache_path
 from archgen.installed_plugins import list_all_entries
 
 if TYPE_CHECKING:
@@ -28,9 +28,8 @@ if TYPE_CHECKING:
 _SUFFIX = ".run"
 _MOST_RUNS = 48
 _MAX_RECORD_BYTES = 32_000_000
-_SETTLED_NANOSECONDS = 2_000_000_000
-"""File systems have clocks that tick as slowly as this: what changed later may change again at the same tick."""
 _WRITING_FLAGS = os.O_WRONLY | os.O_RDWR | os.O_CREAT | os.O_TRUNC | os.O_APPEND
+_WRITING_LETTERS = frozenset("wax+")
 _STAT, _LSTAT, _READLINK, _ACCESS = os.stat, os.lstat, os.readlink, os.access
 _SCANDIR = os.scandir
 _NOTED_FUNCTIONS: tuple[tuple[Any, str, str], ...] = (
@@ -81,7 +80,7 @@ class RunKeeper:
         self._is_keepable = self._path is not None
         self._is_noting = False
         self._originals: list[tuple[Any, str, Callable[..., Any]]] = []
-        self._settled_before = time.time_ns() - _SETTLED_NANOSECONDS
+        self._settled_before = time.time_ns() - SETTLED_NANOSECONDS
 
     def repeat(self) -> int | None:
         """Say what is kept, and return the exit status; None where nothing is kept that holds today."""
@@ -158,9 +157,13 @@ class RunKeeper:
         def ask(path: Any = ".", *arguments: Any, **options: Any) -> Any:  # noqa: ANN401 - as the function that it stands for
             if not self._is_noting or isinstance(path, int):  # a number is a file that is open already
                 pass
-            elif kind == "act" or options.get("dir_fd") is not None or _is_writing(kind, *arguments[:1], **options):
+            elif (
+                kind == "act"
+                or (kind == "bytes" and _is_writing(*arguments[:1], **options))
+                or options.get("dir_fd") is not None
+            ):
                 # Below a folder that is open, a path means something else the next time.
-                self._is_keepable = False
+                self._is_keepable = self._is_noting = False
             else:
                 question = (kind if options.get("follow_symlinks", True) else "lstat", os.fsdecode(path or "."))
                 if question not in self._asked:
@@ -222,10 +225,10 @@ class _CopyingStream(io.RawIOBase):
         self._stream.flush()
 
 
-def _is_writing(kind: str, how: int | str = "r", *, flags: int = 0, mode: str = "r", **_: object) -> bool:
+def _is_writing(how: int | str = "r", *, flags: int = 0, mode: str = "r", **_: object) -> bool:
     """Whether arguments behind the path, of `open` or of `os.open`, open a file to be written."""
     is_marked = bool((how if isinstance(how, int) else flags) & _WRITING_FLAGS)
-    return kind == "bytes" and (is_marked or not {*"wax+"}.isdisjoint(f"{how}{mode}"))
+    return is_marked or not _WRITING_LETTERS.isdisjoint(f"{how}{mode}")
 
 
 def _is_safe(said: Sequence[tuple[int, str]]) -> bool:

@@ -6,12 +6,16 @@ import hashlib
 import os
 import re
 import sys
+import time
 import zlib
 from collections.abc import Iterable, Iterator, Sequence
 from functools import cache
+from operator import attrgetter
 from pathlib import Path
 
 from archgen import resources
+from archgen.cache import SETTLED_NANOSECONDS, find_cache_path
+from archgen.cache.file_store import FileStore, digest_text
 from archgen.installed_plugins import list_all_entries, list_module_files
 
 WRITER_LIBRARIES = (
@@ -27,13 +31,15 @@ WRITER_LIBRARIES = (
 )
 """The libraries that decide what is written. The command line uses click beside them."""
 _FOLDER_SUFFIXES = (".dist-info", ".egg-info")
+_MOST_DIGESTS = 16
+_IDENTITY = attrgetter("st_dev", "st_ino", "st_size", "st_mtime_ns", "st_ctime_ns")
 _EMIT_FOLDER = Path(__file__).resolve().parents[1] / "emit"
 
 
 @cache
 def stamp_writers() -> str:
     """Stamp what writes and draws: the emitters with their fonts, the backends that ship, and all libraries."""
-    return f"{digest_files((_EMIT_FOLDER, resources.resource_path('backends')))} {_describe_libraries()}"
+    return f"{recall_digest((_EMIT_FOLDER, resources.resource_path('backends')))} {_describe_libraries()}"
 
 
 @cache
@@ -43,7 +49,7 @@ def stamp_program() -> str:
         resources.resource_path(name)
         for name in ("backends", "schemas", "passes", "docs/rules", "ros_library", "ros_type_mapper.yaml")
     )
-    return f"{digest_files((_EMIT_FOLDER.parent, *shipped_data))} {_describe_libraries()}{_describe_plugins()}"
+    return f"{recall_digest((_EMIT_FOLDER.parent, *shipped_data))} {_describe_libraries()}{_describe_plugins()}"
 
 
 def _describe_plugins() -> str:
@@ -52,19 +58,42 @@ def _describe_plugins() -> str:
     return f" {list(origins)} {digest_files(map(Path, list_module_files()))}" if origins else ""
 
 
+def recall_digest(tops: Sequence[Path]) -> str:
+    """Digest files and folders, or return what was found before, where all of them are the files that they were then.
+
+    As in kept runs: no file is written without a change of its second date, and what changed just now may change again unseen.
+    """
+    settled_before = time.time_ns() - SETTLED_NANOSECONDS
+    facts = [(file, *_IDENTITY(os.stat(file))) for _, file in _list_files(tops)]  # noqa: PTH116 - as below
+    folder = find_cache_path()
+    # On Windows the second date is that on which a file was made.
+    if folder is None or os.name == "nt" or any(changed >= settled_before for *_, changed in facts):
+        return digest_files(tops)
+    store, key = FileStore(Path(folder), ".stamp", _MOST_DIGESTS), digest_text(repr(facts))
+    digest = (store.load(key) or b"").decode("ascii", "replace")
+    if not re.fullmatch("[0-9a-f]{64}", digest):
+        digest = digest_files(tops)
+        store.store(key, digest.encode())
+    return digest
+
+
 def digest_files(tops: Iterable[Path]) -> str:
     """Digest files and folders: names and contents, but for what Python leaves there (`__pycache__`)."""
     checksum = hashlib.sha256()
+    for name, file in _list_files(tops):
+        with open(file, "rb", buffering=0) as stream:  # noqa: PTH123
+            data = stream.read()
+        checksum.update(f"{name} {len(data)}\n".encode("utf-8", "surrogatepass") + data)
+    return checksum.hexdigest()
+
+
+def _list_files(tops: Iterable[Path]) -> Iterator[tuple[str, str]]:
+    """Yield files, in a fixed order, with their names from the top: two installations of the same archgen share what they keep."""
     for top in tops:
         # By names as text: of a thousand files, paths as objects took more than half of the time.
         prefix = len(os.path.join(top.parent, ""))  # noqa: PTH118
         for file in sorted(_walk_files(top)):
-            with open(file, "rb", buffering=0) as stream:  # noqa: PTH123
-                data = stream.read()
-            # Relative, so that two installations of the same archgen share what they keep.
-            name = file[prefix:].replace(os.sep, "/")
-            checksum.update(f"{name} {len(data)}\n".encode("utf-8", "surrogatepass") + data)
-    return checksum.hexdigest()
+            yield file[prefix:].replace(os.sep, "/"), file
 
 
 def _walk_files(top: Path) -> Iterator[str]:

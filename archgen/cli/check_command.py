@@ -94,9 +94,13 @@ def command(  # noqa: PLR0913 - one for each option
         )
         _update_baseline(command_support.check_or_exit(project), baseline)
     _refuse_wrong_use({"--fix": fix, "--watch": watch}, form=form, baseline=baseline)
+    from archgen.pipeline import VersionCache
+
     check_once = functools.partial(
         _check_once,
         *(project, files),
+        # A single check is the quicker for what need not be kept for another one.
+        kept_versions=VersionCache() if watch or changed_since is not None else None,
         form=form,
         variant=variant,
         select=select,
@@ -107,7 +111,7 @@ def command(  # noqa: PLR0913 - one for each option
         changed_since=changed_since,
     )
     if watch:
-        _watch(project, check_once)
+        _watch(project, check_once)  # with what the check before found out about files that are as they were
     else:
         sys.exit(check_once())
 
@@ -135,6 +139,7 @@ def _check_once(  # noqa: PLR0913 - one for each option
     project: Path | None,
     files: tuple[Path, ...],
     *,
+    kept_versions: VersionCache | None,
     form: str,
     variant: str | None,
     select: str | None,
@@ -144,17 +149,16 @@ def _check_once(  # noqa: PLR0913 - one for each option
     baseline: Path | None,
     changed_since: str | None,
 ) -> int:
-    """Check a project, print what is asked for, and return the exit status."""
-    from archgen.pipeline import VersionCache
+    """Check a project, print what is asked for, and return the exit status; `kept_versions` is kept for another check."""
     from archgen.products import check_findings
 
-    # A single check is the quicker for what need not be kept for another one.
-    version_cache = VersionCache()
-    kept_versions = None if changed_since is None else version_cache
     checked_project, names = _check_asked(project, files, kept_versions, fix=fix)
     if variant is not None:
         checked_project = _keep_variants(checked_project, variant)
-    earlier_project = None if changed_since is None else _check_at_revision(project, changed_since, version_cache)
+    earlier_project = None
+    if kept_versions is not None:
+        kept_versions.forget_old_slices(checked_project)
+        earlier_project = None if changed_since is None else _check_at_revision(project, changed_since, kept_versions)
 
     reported = check_findings.report_findings(checked_project, baseline, earlier_project)
     selection = command_support.select_or_exit(checked_project, select)

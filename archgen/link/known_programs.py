@@ -17,9 +17,9 @@ from archgen.model.message_types import flow_of, full_message_name
 from archgen.model.node import Endpoint, Node
 from archgen.project.library_reading import (
     choose_distro,
-    index_shipped_programs,
+    index_programs,
     list_shipped_packages,
-    load_shipped_component_types,
+    load_package_types,
 )
 from archgen.syntax.yaml_tree import node_to_data
 
@@ -42,9 +42,11 @@ def find_unlike_programs(architecture: Architecture) -> Iterator[Diagnostic]:
         node for node in architecture.nodes.values() if node.package and not node.observed and node.status != "adapted"
     ]
     distro = choose_distro(architecture.distro)
-    if not nodes or not list_shipped_packages(distro) & {node.package for node in nodes}:
+    packages = list_shipped_packages(distro) & {node.package for node in nodes} if nodes else None
+    if not packages:
         return
-    types_by_program = index_shipped_programs(distro)
+    types = load_package_types(distro, packages)
+    types_by_program = index_programs(types)
     endpoints: dict[str, list[Endpoint]] = defaultdict(list)
     for endpoint in architecture.endpoints:
         if endpoint.medium == "ros" and not endpoint.internal and endpoint.name is not None:
@@ -52,7 +54,7 @@ def find_unlike_programs(architecture: Architecture) -> Iterator[Diagnostic]:
     for node in nodes:
         type_names = types_by_program.get((node.package or "", node.plugin or node.executable or ""), ())
         if len(type_names) == 1 and endpoints[node.id]:
-            component_type = _as_mapping(node_to_data(load_shipped_component_types(distro)[type_names[0]].value))
+            component_type = _as_mapping(node_to_data(types[type_names[0]].value))
             ends = list(_list_ends(component_type, node))
             yield from _find_other_names(node, ends, endpoints[node.id], architecture.distro)
 

@@ -103,7 +103,7 @@ class WarmProject:
         if lost_words:
             loaded_project = replace(loaded_project, lost_keys=loaded_project.lost_keys | lost_words)
         checked_project = check_loaded_project(loaded_project, self.cache, variants, has_timing=has_timing)
-        self._forget_old_slices(checked_project)
+        self.cache.forget_old_slices(checked_project)
         return checked_project
 
     def list_text_errors(self, checked_project: CheckedProject) -> tuple[Diagnostic, ...]:
@@ -134,12 +134,6 @@ class WarmProject:
     def _find_errors(self, file: str, text: str) -> tuple[Diagnostic, ...]:
         parsed_slice = parse_slice(file, text, self.cache.parsed_slices)
         return parsed_slice.diagnostics if parsed_slice.document is None else ()
-
-    def _forget_old_slices(self, checked_project: CheckedProject) -> None:
-        """Forget the files as they were: a day of editing has thousands of versions."""
-        for file, text in list(self.cache.parsed_slices):
-            if checked_project.sources.text_of(file) != text:
-                del self.cache.parsed_slices[file, text]
 
 
 def _find_changed_line(old_text: str, new_text: str) -> int:

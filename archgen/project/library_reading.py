@@ -9,7 +9,8 @@ distributions of ROS, and in which of them a package is released.
 from __future__ import annotations
 
 import posixpath
-from collections.abc import Iterator, Mapping
+import re
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from functools import cache, lru_cache
 from types import MappingProxyType
 
@@ -36,6 +37,8 @@ from archgen.syntax.yaml_tree import (
 
 LIBRARY_SECTIONS = ("component_types", "types")
 _MEANINGS = frozenset({"ros", "glossary"})
+_TYPE_START = re.compile(r"^(?=  \w)", re.MULTILINE)
+_NAMED_PACKAGE = re.compile(r"\bpackage: *(\w+)")
 _SETTINGS = KEYS[SLICE].keys() - SECTION_KINDS.keys() - _MEANINGS | {"partners"}
 """Sections of a library that is checked as a project of its own. They say nothing about who uses it."""
 
@@ -245,13 +248,33 @@ def load_shipped_component_types(distro: str | None) -> Mapping[str, MappingEntr
 
     They are shared: nobody may change their trees.
     """
-    packages = list_shipped_packages(distro)
-    entries: dict[str, MappingEntry] = {}
-    for file, distros in read_distribution_table().files.items():
-        if distro in distros:
-            for entry in parse_shipped_file(file):
-                if _get_node_text(entry.value, "package") in packages:
-                    entries[entry.key] = _say_that_it_exists(entry.change_keys({"node": _say_that_it_exists}))
+    return _gather_types(distro, list_shipped_packages(distro), parse_shipped_file)
+
+
+@lru_cache(8)
+def load_package_types(distro: str | None, packages: frozenset[str]) -> Mapping[str, MappingEntry]:
+    """Return those of them that are of some packages. The rest of the files is not parsed: their places are others."""
+
+    def parse_part(file: str) -> Iterable[MappingEntry]:
+        head, *type_texts = _TYPE_START.split(_read_shipped_text(file))
+        kept = [each for each in type_texts if not packages.isdisjoint(_NAMED_PACKAGE.findall(each))]
+        if any(": *" in each for each in kept):  # what they share with other types stands at one of these
+            kept = [each for each in type_texts if each in kept or ": &" in each]
+        return _parse_types(file, "".join([head, *kept])) if kept else ()
+
+    return _gather_types(distro, packages & list_shipped_packages(distro), parse_part)
+
+
+def _gather_types(
+    distro: str | None, packages: frozenset[str], parse: Callable[[str], Iterable[MappingEntry]]
+) -> Mapping[str, MappingEntry]:
+    files = [file for file, distros in read_distribution_table().files.items() if distro in distros]
+    entries = {
+        entry.key: _say_that_it_exists(entry.change_keys({"node": _say_that_it_exists}))
+        for file in files
+        for entry in parse(file)
+        if _get_node_text(entry.value, "package") in packages
+    }
     return MappingProxyType(dict(sorted(entries.items())))
 
 
@@ -264,12 +287,17 @@ def _say_that_it_exists(entry: MappingEntry) -> MappingEntry:
 
 @cache
 def index_shipped_programs(distro: str | None) -> Mapping[tuple[str, str], tuple[str, ...]]:
-    """Return the names of the types that ship for a distribution, by package and executable or plug-in.
+    """Return the names of the types that ship for a distribution, as `index_programs` has them."""
+    return index_programs(load_shipped_component_types(distro))
+
+
+def index_programs(types: Mapping[str, MappingEntry]) -> Mapping[tuple[str, str], tuple[str, ...]]:
+    """Return the names of types by package and executable or plug-in.
 
     Without generic ones: which messages theirs are only the running program tells.
     """
     index: dict[tuple[str, str], tuple[str, ...]] = {}
-    for name, entry in load_shipped_component_types(distro).items():
+    for name, entry in types.items():
         for key in ("executable", "plugin") if find_value(entry.value, "generic") is None else ():
             program = _get_node_text(entry.value, "package"), _get_node_text(entry.value, key)
             if program[1]:
@@ -331,7 +359,15 @@ def read_distribution_table() -> DistributionTable:
 @cache
 def parse_shipped_file(file: str) -> MappingNode:
     """Return the component types of a shipped file. Raises `ValueError` where it is wrong, which a test rules out."""
-    parsed_slice = parse_slice(file, resources.resource_path(_FOLDER, file).read_text("utf-8"))
+    return _parse_types(file, _read_shipped_text(file))
+
+
+def _read_shipped_text(file: str) -> str:
+    return resources.resource_path(_FOLDER, file).read_text("utf-8")
+
+
+def _parse_types(file: str, text: str) -> MappingNode:
+    parsed_slice = parse_slice(file, text)
     diagnostics = parsed_slice.validate_once().diagnostics
     types = parsed_slice.document.root.get("component_types") if parsed_slice.document else None
     if diagnostics or not isinstance(types, MappingNode):

@@ -80,18 +80,18 @@ def _to_validator_data(node: YamlNode) -> object:
     Floats go as text, because the validator reads NaN as null and 5.0 as a whole number. Integers are clamped to what
     it can hold.
     """
+    if isinstance(node, ScalarNode):  # first: most nodes are
+        plain_value = node.value
+        # `type(...) is`: a bool is an int as well, and must stay a bool.
+        if type(plain_value) is int:
+            return max(-_INTEGER_LIMIT, min(plain_value, _INTEGER_LIMIT))
+        return node.text if type(plain_value) is float else plain_value
     if isinstance(node, MappingNode):
         return {
             _NUMERIC_KEY_MARK + key if key[0] in _NUMERIC_KEY_STARTS else key: _to_validator_data(entry.value)
             for key, entry in node.entries.items()
         }
-    if isinstance(node, SequenceNode):
-        return [_to_validator_data(item) for item in node.items]
-    plain_value = node.value
-    # `type(...) is`: a bool is an int as well, and must stay a bool.
-    if type(plain_value) is float:
-        return node.text
-    return max(-_INTEGER_LIMIT, min(plain_value, _INTEGER_LIMIT)) if type(plain_value) is int else plain_value
+    return [_to_validator_data(item) for item in node.items]
 
 
 _NUMERIC_KEY_MARK = "\0"

@@ -26,7 +26,7 @@ _SLICE = "groups: {g: {components: {c: {outputs: {o: T}}}}}\n"
 def _empty_cache(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[None]:
     monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "cache"))
     monkeypatch.setattr(cache, "KEPT_VERBS", ("check", "generate"))
-    monkeypatch.setattr(kept_runs, "_SETTLED_NANOSECONDS", -10_000_000)
+    monkeypatch.setattr(kept_runs, "SETTLED_NANOSECONDS", -10_000_000)
     # The code of this process is more than that of any run.
     monkeypatch.setattr(kept_runs, "_list_code", lambda: {("bytes", "toy.py"): ""})
     place = tmp_path / "place"
@@ -147,7 +147,7 @@ def test_a_run_whose_file_changes_meanwhile_is_not_kept() -> None:
 
 
 def test_what_changed_just_before_is_not_kept(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(kept_runs, "_SETTLED_NANOSECONDS", 2_000_000_000)
+    monkeypatch.setattr(kept_runs, "SETTLED_NANOSECONDS", 2_000_000_000)
     Path("a").write_text("old")
     assert not _run(lambda: Path("a").read_text())
     assert not _run(lambda: Path("a").read_text())
@@ -192,7 +192,7 @@ def _archgen(*words: str, settled: int = -10_000_000) -> tuple[bool, int, bytes]
     script = f"""if True:
         import sys
         from archgen.cache import kept_runs
-        kept_runs._SETTLED_NANOSECONDS = {settled}
+        kept_runs.SETTLED_NANOSECONDS = {settled}
         from archgen.__main__ import main
         try:
             main()
@@ -215,7 +215,7 @@ def test_all_that_python_tells_of_the_disk_was_noted(words: tuple[str, ...]) -> 
         told = []
         sys.addaudithook(lambda event, arguments: told.append((event, arguments)))
         from archgen.cache import kept_runs
-        kept_runs._SETTLED_NANOSECONDS = -10_000_000
+        kept_runs.SETTLED_NANOSECONDS = -10_000_000
         from archgen.__main__ import main
         keep = kept_runs.RunKeeper.keep
         def compare(keeper, status):

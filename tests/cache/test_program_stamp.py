@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import sys
 from typing import TYPE_CHECKING
 
@@ -11,6 +12,7 @@ from archgen import resources
 from archgen.cache import program_stamp
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
     from pathlib import Path
 
 
@@ -47,6 +49,43 @@ def test_it_is_no_matter_where_the_program_lies(top: Path) -> None:
     assert program_stamp.digest_files((top.rename(top.parent / "other" / "program"),)) == before
 
 
+def _recall(top: Path, monkeypatch: pytest.MonkeyPatch, settled_nanoseconds: int) -> tuple[str, int]:
+    """Return the digest of files that changed so long ago, and how many were read for it."""
+    digested: list[Path] = []
+
+    def digest(tops: Sequence[Path]) -> str:
+        digested.extend(tops)
+        return digest_files(tops)
+
+    digest_files = program_stamp.digest_files
+    with monkeypatch.context() as patch:
+        patch.setenv("XDG_CACHE_HOME", str(top.parent / "cache"))
+        patch.setattr(program_stamp, "SETTLED_NANOSECONDS", settled_nanoseconds)
+        patch.setattr(program_stamp, "digest_files", digest)
+        return program_stamp.recall_digest((top,)), len(digested)
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="no date tells there that a file was written")
+def test_a_program_that_is_as_it_was_is_not_read_again(top: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    digest = program_stamp.digest_files((top,))
+    assert _recall(top, monkeypatch, -10_000_000_000) == (digest, 1)
+    assert _recall(top, monkeypatch, -10_000_000_000) == (digest, 0)
+    # Files that are this young may change again at the same tick of the clock.
+    assert _recall(top, monkeypatch, 10_000_000_000) == (digest, 1)
+    # Same size, and the date that can be set by hand as before.
+    file = top / "room" / "a.py"
+    status = file.stat()
+    file.write_text("9")
+    os.utime(file, ns=(status.st_atime_ns, status.st_mtime_ns))
+    changed = program_stamp.digest_files((top,))
+    assert changed != digest
+    assert _recall(top, monkeypatch, -10_000_000_000) == (changed, 1)
+    # A damaged file of the cache counts as missing.
+    for kept in (top.parent / "cache" / "archgen").glob("*.stamp"):
+        kept.write_bytes(b"\xff")
+    assert _recall(top, monkeypatch, -10_000_000_000) == (changed, 1)
+
+
 def test_libraries_and_graphviz_itself_are_named() -> None:
     for stamp in (program_stamp.stamp_writers(), program_stamp.stamp_program()):
         assert "pygraphviz 2." in stamp
@@ -58,7 +97,7 @@ def test_libraries_and_graphviz_itself_are_named() -> None:
 def test_the_pages_of_rules_are_part_of_the_program(monkeypatch: pytest.MonkeyPatch) -> None:
     # The site shows them: one that was edited is written again.
     digested: list[Path] = []
-    monkeypatch.setattr(program_stamp, "digest_files", digested.extend)
+    monkeypatch.setattr(program_stamp, "recall_digest", digested.extend)
     program_stamp.stamp_program.__wrapped__()
     assert resources.resource_path("docs", "rules") in digested
 

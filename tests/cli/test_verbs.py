@@ -9,6 +9,7 @@ import click
 import pytest
 
 from archgen.cli import PLUMBING, VERB_GROUPS, VERBS
+from archgen.syntax import yaml_parser
 from tests.cli.conftest import Run
 from tests.running import RAMCIP
 
@@ -107,6 +108,29 @@ def test_watching_checks_again_when_a_file_is_saved(run: Run, robot: Path, monke
     first, second = click.unstyle(ran.out).split("--- a file was saved\n")
     assert (first, "no output named `g.stereo.image`" in second, len(seen)) == ("", True, 1)
     assert run("check", robot, "--watch", "--format", "json").status == 2
+
+
+def test_watching_reads_again_only_what_was_saved(run: Run, robot: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    parsed: list[str] = []
+
+    def parse(file: str, text: str) -> object:
+        parsed.append(file)
+        return parse_yaml(file, text)
+
+    def save_twice(_places: object, on_change: Callable[[], object], _stopped: object) -> None:
+        for name in ("stereo", "stereo_camera"):
+            text = ROBOT.replace("g.stereo_camera.image", f"g.{name}.image")
+            (robot / "archgen.yaml").write_text(text, encoding="utf-8")
+            on_change()
+
+    (robot / "more.yaml").write_text("groups: {more: {title: More}}\n", encoding="utf-8")
+    parse_yaml = yaml_parser.parse_yaml
+    monkeypatch.setattr(yaml_parser, "parse_yaml", parse)
+    monkeypatch.setattr("archgen.live.file_watch.watch_files", save_twice)
+    first, second, third = click.unstyle(run("check", robot, "--watch").out).split("--- a file was saved\n")
+    assert parsed == ["archgen.yaml", "more.yaml", "archgen.yaml", "archgen.yaml"]
+    assert "no output named `g.stereo.image`" in second
+    assert first == third
 
 
 @pytest.mark.parametrize(

@@ -17,7 +17,7 @@ from archgen.model.known_interfaces import KNOWN_DISTROS
 from archgen.model.message_types import full_message_name
 from archgen.project import library_reading
 from archgen.project.library_reading import load_shipped_component_types, read_shipped_document
-from archgen.syntax.yaml_tree import MappingNode, SequenceNode, YamlNode
+from archgen.syntax.yaml_tree import MappingNode, SequenceNode, YamlNode, node_to_data
 from tests.repositories import repository
 from tests.running import ROOT, archgen_here
 
@@ -125,6 +125,24 @@ def test_the_table_of_distributions_names_what_there_is() -> None:
             for entry in library_reading.parse_shipped_file(file)
         ]
         assert len(names) == len(set(names)), distro
+
+
+@pytest.mark.parametrize("distro", KNOWN_DISTROS)
+def test_of_some_packages_all_types_are_found_without_the_rest_of_the_files(distro: str) -> None:
+    types = load_shipped_component_types(distro)
+    names_by_package: dict[str, set[str]] = {}
+    for (package, _), names in library_reading.index_shipped_programs(distro).items():
+        names_by_package.setdefault(package, set()).update(names)
+    for package, type_names in names_by_package.items():
+        found = library_reading.load_package_types(distro, frozenset({package, "nowhere"}))
+        assert type_names <= found.keys()
+        assert [*found] == [
+            name
+            for name, entry in types.items()
+            if mapping_values.get_text(mapping_values.get_mapping(mapping_values.get_body(entry), "node"), "package")
+            == package
+        ]
+        assert all(node_to_data(entry.value) == node_to_data(types[name].value) for name, entry in found.items())
 
 
 def test_distributions_differ() -> None:
