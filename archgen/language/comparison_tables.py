@@ -303,6 +303,7 @@ KEY_FACTS: Mapping[str, Mapping[str, KeyFacts]] = {
         "scheduling.": {"form": "mapping", "worse": "always"},
         "description": {"form": "prose", "effect": "text"},
         "address": {"effect": "system"},
+        "discovery_server": {"effect": "system"},
         "environment.": {"form": "mapping", "effect": "system"},
         "tags": {"form": "set", "effect": "text", "verbs": ("now has the tag", "no longer has the tag")},
         "properties.": {"form": "properties", "effect": "system"},

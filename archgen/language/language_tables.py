@@ -328,8 +328,8 @@ KEYS: Mapping[str, Mapping[str, str]] = {
     },
     "host": {
         "title": "text", "cores": "count", "scheduling": "host_scheduling", "description": "prose",
-        "address": "host_address", "environment": "start_environment", "tags": "tags", "properties": "properties",
-        "hints": "hints",
+        "address": "host_address", "discovery_server": "port_number", "environment": "start_environment",
+        "tags": "tags", "properties": "properties", "hints": "hints",
     },
     "host_scheduling": {
         "fair": "fair_scheduling",
@@ -520,7 +520,7 @@ WORDS: Mapping[str, tuple[str, ...]] = {
     "qos_reliability": ("reliable", "best_effort"), "role": ("source", "filter", "sink", "reactive"),
     "severity": ("note", "off", "warning", "error"), "start_phase": ("network", "simulators", "core", "components"),
     "start_state": ("unconfigured", "inactive", "active"), "status": ("planned", "existing"),
-    "visibility": ("public", "protected", "private"), "ros.discovery": ("subnet", "peers"),
+    "visibility": ("public", "protected", "private"), "ros.discovery": ("subnet", "peers", "server"),
     "report.lists[]": ("figures", "tables"),
     "property_declaration.type": ("boolean", "integer", "float", "string", "date"),
     "view.colour": ("group", "owner", "role", "status", "host", "package", "tag"),

@@ -96,8 +96,8 @@ RECORD_KEYS: Mapping[str, Mapping[str, str]] = {
         "part_fields": "part_fields", "constants": "constant{}", "properties": "annotations", "hints": "annotations",
     },
     "host": {
-        "title": "", "description": "", "cores": "", "tags": "", "scheduling": "", "address": "", "environment": "",
-        "properties": "annotations", "hints": "annotations",
+        "title": "", "description": "", "cores": "", "tags": "", "scheduling": "", "address": "",
+        "discovery_server": "", "environment": "", "properties": "annotations", "hints": "annotations",
     },
     "container": {
         "title": "", "host": "", "threads": "", "scheduling": "", "name": "", "package": "", "executable": "",
