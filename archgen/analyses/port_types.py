@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections import defaultdict
 from collections.abc import Iterator, Mapping
 
+from archgen.derivation.wire.running_state import FAST_DDS
 from archgen.diagnostics import NO_SPAN, Diagnostic, Label, Severity, Span, did_you_mean
 from archgen.grouping import group_pairs
 from archgen.model.architecture import Architecture
@@ -12,7 +13,7 @@ from archgen.model.component import Connection, Input, Output
 from archgen.model.message_types import flow_of, full_message_name
 from archgen.model.node import Node
 from archgen.model.port_media import MEDIUM_NAMES, MEMORY, is_physical, name_medium, uses_ros
-from archgen.model.ros_distro import can_name_peers, is_ros_1
+from archgen.model.ros_distro import can_name_peers, is_ros_1, knows_super_clients
 
 
 def is_expected_type(architecture: Architecture, expected_type: str, output: Output) -> bool:
@@ -219,33 +220,8 @@ def _find_places(architecture: Architecture) -> Mapping[str, Mapping[Span, str]]
 
 def unused_ros_setting(architecture: Architecture) -> Iterator[Diagnostic]:
     """Something is written that only ROS has, at a port or a program that is no ROS; or that its distribution has not."""
-    middleware = next((each for each in architecture.ros_environment if each.name == "RMW_IMPLEMENTATION"), None)
-    # Fast DDS is told by a profile that is generated.
-    is_told = not is_ros_1(architecture.distro) and (not middleware or str(middleware.value).startswith("rmw_fastrtps"))
-    if architecture.ros_discovery == "peers" and not can_name_peers(architecture.distro) and not is_told:
-        yield Diagnostic(
-            "unused-ros-setting",
-            f"`discovery: peers` has no effect: {architecture.distro} reads no addresses of peers from the environment, ROS 2 does since Iron",
-            architecture.distro_at,
-            help="leave it out, and give the nodes a profile of their DDS by `ros: {environment: ...}`; for Fast DDS one is generated",
-        )
-    if architecture.ros_discovery == "peers" and middleware and str(middleware.value).startswith("rmw_zenoh"):
-        yield Diagnostic(
-            "unused-ros-setting",
-            "`discovery: peers` has no effect: Zenoh reads no addresses of peers from ROS's variables",
-            middleware.at,
-            help="leave it out, and let the hosts' routers connect: `ZENOH_ROUTER_CONFIG_URI` in `environment` names a file that says to whom",
-        )
-    hosts = architecture.hosts.values() if architecture.ros_discovery == "peers" and is_told else ()
-    for host in hosts if len(hosts) > 1 else ():
-        if ":" in host.network_name:
-            yield Diagnostic(
-                "unused-ros-setting",
-                f"`discovery: peers` finds nothing at `{host.network_name}`: Fast DDS takes no peer by a number of IPv6, and nodes that are told of one do not start",
-                host.at,
-                help="write its IPv4 number, or a name that has one, as `address`; or another DDS (`RMW_IMPLEMENTATION` in `environment` of `ros`)",
-                element=host.id,
-            )
+    for message, place, help_line, element in _list_discovery_settings(architecture):
+        yield Diagnostic("unused-ros-setting", message, place, help=help_line, element=element)
     for node in architecture.nodes.values():
         for key, place, reason in (*_list_port_settings(architecture, node), *_list_program_settings(node)):
             yield Diagnostic(
@@ -255,6 +231,46 @@ def unused_ros_setting(architecture: Architecture) -> Iterator[Diagnostic]:
                 help="leave it out",
                 element=node.id,
             )
+
+
+def _list_discovery_settings(architecture: Architecture) -> Iterator[tuple[str, Span, str, str | None]]:
+    """Yield what is written of how nodes find one another, and finds nobody: message, place, help, host."""
+    way, distro = architecture.ros_discovery, architecture.distro
+    written = next((each for each in architecture.ros_environment if each.name == "RMW_IMPLEMENTATION"), None)
+    middleware = str(written.value) if written else FAST_DDS
+    is_fast_dds = middleware.startswith(FAST_DDS) and not is_ros_1(distro)
+    # These are told by a profile that is generated.
+    is_told = is_fast_dds or (middleware.startswith("rmw_cyclonedds") and not is_ros_1(distro))
+    if way == "peers" and not can_name_peers(distro) and not is_told:
+        words = f"{distro} reads no addresses of peers from the environment, ROS 2 does since Iron"
+        help_line = "leave it out, and give the nodes a profile of their DDS by `ros: {environment: ...}`; for Fast DDS and Cyclone DDS one is generated"
+        yield f"`discovery: peers` has no effect: {words}", architecture.distro_at, help_line, None
+    if way == "peers" and written and middleware.startswith("rmw_zenoh"):
+        words = "`discovery: peers` has no effect: Zenoh reads no addresses of peers from ROS's variables"
+        help_line = "leave it out, and let the hosts' routers connect: `ZENOH_ROUTER_CONFIG_URI` in `environment` names a file that says to whom"
+        yield words, written.at, help_line, None
+    hosts = list(architecture.hosts.values())
+    if way == "server":
+        if not is_fast_dds:
+            words = f"`{middleware}` has no discovery server" if not is_ros_1(distro) else f"{distro} has a master"
+        elif not knows_super_clients(distro):
+            words = f"what looks at nodes of {distro} sees none that it joins; it does with Fast DDS 2.13, in ROS 2 since Jazzy"
+        else:
+            words = "" if any(host.discovery_server for host in hosts) else "no host has a `discovery_server`"
+        if words:
+            is_nowhere = words.startswith("no host")
+            help_line = "write `discovery_server: 11811` at a host that always runs" if is_nowhere else "leave it out"
+            help_line = help_line if is_ros_1(distro) else f"{help_line}, or write `discovery: peers`"
+            yield f"`discovery: server` has no effect: {words}", architecture.distro_at, help_line, None
+    for host in hosts:
+        if host.discovery_server and way != "server":
+            words = f"`discovery_server` of `{host.id}` has no effect: nothing says that nodes ask it"
+            yield words, host.at, "write `ros: {discovery: server}`, or leave it out", host.id
+        is_asked = host.discovery_server if way == "server" else way == "peers" and len(hosts) > 1
+        if is_asked and is_fast_dds and ":" in host.network_name:
+            words = f"`discovery: {way}` finds nothing at `{host.network_name}`: Fast DDS takes no {'peer' if way == 'peers' else 'server'} by a number of IPv6, and nodes that are told of one do not start"
+            help_line = "write its IPv4 number, or a name that has one, as `address`; or another DDS (`RMW_IMPLEMENTATION` in `environment` of `ros`)"
+            yield words, host.at, help_line, host.id
 
 
 def _list_port_settings(architecture: Architecture, node: Node) -> Iterator[tuple[str, Span, str]]:

@@ -1,20 +1,21 @@
-"""The profile of Fast DDS with which the processes of a host are started: what of `discovery: peers` no variable of ROS says."""
+"""The profile of Fast DDS or Cyclone DDS with which the processes of a host are started: what of `discovery` no variable of ROS says."""
 
 from __future__ import annotations
 
 import ipaddress
 from xml.sax.saxutils import escape
 
-from archgen.derivation.wire.running_state import list_peers
+from archgen.derivation.wire.running_state import FAST_DDS, list_discovery_servers, list_peers
 from archgen.frozen import dataclass
 from archgen.model.architecture import Architecture
 from archgen.model.ros_distro import PAST_DISTROS, can_name_peers, is_ros_1
 
 _LOOPBACK = "127.0.0.1"
-_FAST_DDS = "rmw_fastrtps"
+_CYCLONE = "rmw_cyclonedds"
 _VARIABLES = ("FASTRTPS_DEFAULT_PROFILES_FILE", "FASTDDS_DEFAULT_PROFILES_FILE")
 """Of Fast DDS 2, and of Fast DDS 3, which ROS has since Kilted."""
-_OWN_WORDS = frozenset({*_VARIABLES, "ROS_DISCOVERY_SERVER"})
+_CYCLONE_VARIABLE = "CYCLONEDDS_URI"
+_OWN_WORDS = frozenset({*_VARIABLES, _CYCLONE_VARIABLE, "ROS_DISCOVERY_SERVER"})
 """Variables by which a project says itself how its DDS finds others."""
 
 
@@ -30,6 +31,17 @@ class DdsProfile:
 
     def write_xml(self) -> str:
         """Return the text of the file."""
+        if self.variable == _CYCLONE_VARIABLE:
+            # The first address is the loopback, which Cyclone DDS does not need: programs of one computer meet at its own.
+            interfaces = "".join(
+                f'\n        <NetworkInterface address="{escape(each)}"/>' for each in self.interfaces[1:]
+            )
+            interfaces = f"\n      <Interfaces>{interfaces}\n      </Interfaces>" if interfaces else ""
+            own = self.interfaces[1:] or (_LOOPBACK,)
+            peers = "".join(
+                f'\n        <Peer Address="{escape(each)}"/>' for each in dict.fromkeys((*own, *self.peers))
+            )
+            return _CYCLONE_PROFILE.format(interfaces=interfaces, peers=peers)
         interfaces = "".join(f"\n          <address>{escape(each)}</address>" for each in self.interfaces)
         peers = "".join(
             f"\n            <locator><udpv4><address>{escape(each)}</address></udpv4></locator>" for each in self.peers
@@ -39,6 +51,23 @@ class DdsProfile:
         return _PROFILE.format(white_list=white_list, builtin=builtin if peers else "")
 
 
+_CYCLONE_PROFILE = """\
+<?xml version="1.0" encoding="UTF-8"?>
+<!-- Which interface DDS uses, and whom it asks for others: from hosts, addresses and links. Made by archgen. -->
+<CycloneDDS xmlns="https://cdds.io/config">
+  <Domain Id="any">
+    <General>{interfaces}
+      <AllowMulticast>false</AllowMulticast>
+    </General>
+    <Discovery>
+      <ParticipantIndex>auto</ParticipantIndex>
+      <MaxAutoParticipantIndex>100</MaxAutoParticipantIndex>
+      <Peers>{peers}
+      </Peers>
+    </Discovery>
+  </Domain>
+</CycloneDDS>
+"""
 _PROFILE = """\
 <?xml version="1.0" encoding="UTF-8"?>
 <!-- Which interfaces DDS uses, and whom it asks for others: from hosts, addresses and links. Made by archgen. -->
@@ -72,25 +101,29 @@ _PROFILE = """\
 def find_dds_profile(architecture: Architecture, host_id: str | None) -> DdsProfile | None:
     """Return the profile of a host; None where nothing is to be said, the project says it itself, or its DDS is another one."""
     host = architecture.hosts.get(host_id or "")
-    if host is None or architecture.ros_discovery != "peers" or is_ros_1(architecture.distro):
+    servers = list_discovery_servers(architecture)
+    if host is None or is_ros_1(architecture.distro) or not (servers or architecture.ros_discovery == "peers"):
         return None
     written = {each.name: str(each.value) for each in architecture.ros_environment} | dict(host.environment)
-    if not written.get("RMW_IMPLEMENTATION", _FAST_DDS).startswith(_FAST_DDS) or not _OWN_WORDS.isdisjoint(written):
+    middleware = written.get("RMW_IMPLEMENTATION", FAST_DDS)
+    if not middleware.startswith((FAST_DDS, _CYCLONE)) or not _OWN_WORDS.isdisjoint(written):
         return None
-    # It takes no peer by a number of IPv6, as `archgen check` says.
+    # Fast DDS takes no peer by a number of IPv6, as `archgen check` says; in Cyclone DDS it would need an interface of its own.
     others = (each for each in list_peers(architecture, host.id) if ":" not in each)
-    peers = () if can_name_peers(architecture.distro) else tuple(dict.fromkeys((_LOOPBACK, *others)))
+    peers = () if servers or can_name_peers(architecture.distro) else tuple(dict.fromkeys((_LOOPBACK, *others)))
     networks = [each for each in architecture.links.values() if host.id in each.connects and len(each.connects) > 1]
     # Its one address is that of one network: of a second one nobody says which interface it is.
     interfaces = (_LOOPBACK, host.network_name) if len(networks) <= 1 and _names_interface(host.network_name) else ()
     is_second = architecture.distro in PAST_DISTROS | {"humble", "jazzy"}
-    return DdsProfile(_VARIABLES[0 if is_second else 1], interfaces, peers) if interfaces or peers else None
+    variable = _CYCLONE_VARIABLE if middleware.startswith(_CYCLONE) else _VARIABLES[0 if is_second else 1]
+    return DdsProfile(variable, interfaces, peers) if interfaces or peers else None
 
 
 def record_dds_profile(architecture: Architecture, host_id: str | None) -> dict[str, str] | None:
-    """Return the variable that names the profile of a host, and its text, for templates."""
+    """Return the variable that names the profile of a host, what stands before its path there, and its text, for templates."""
     profile = find_dds_profile(architecture, host_id)
-    return {"variable": profile.variable, "text": profile.write_xml()} if profile else None
+    scheme = "file://" if profile and profile.variable == _CYCLONE_VARIABLE else ""
+    return {"variable": profile.variable, "scheme": scheme, "text": profile.write_xml()} if profile else None
 
 
 def _names_interface(address: str) -> bool:

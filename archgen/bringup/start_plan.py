@@ -18,7 +18,7 @@ from archgen.bringup.start_commands import (
     list_transitions,
 )
 from archgen.bringup.wait_circles import StartWaits, group_by_waiting, keep_acyclic, name_container
-from archgen.derivation.wire.running_state import find_environment
+from archgen.derivation.wire.running_state import SUPER_CLIENT_VARIABLE, find_environment
 from archgen.derivation.wire.wire_names import NodeNames
 from archgen.frozen import replace
 from archgen.grouping import group_pairs
@@ -71,6 +71,12 @@ def find_network_variables(steps: Iterable[StartStep]) -> dict[str, str]:
     common = [set(step.environment.items()) for step in steps if step.command and step.kind != "composable"]
     shared = set[tuple[str, str]].intersection(*common) if common else set()
     return {name: text for name, text in sorted(shared) if _NETWORK_VARIABLE.match(name)}
+
+
+def find_looking_variables(steps: Iterable[StartStep]) -> dict[str, str]:
+    """Return the same for what looks whether some steps are up: a discovery server has to tell it of all nodes."""
+    variables = find_network_variables(steps)
+    return {name: "TRUE" if name == SUPER_CLIENT_VARIABLE else text for name, text in variables.items()}
 
 
 def _gather_awaited(waits: Iterable[Wait], steps: Mapping[str, StartStep]) -> Iterator[AwaitedStep]:

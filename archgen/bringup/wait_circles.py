@@ -184,11 +184,11 @@ class StartWaits:
         self.managers = {node.id: self._list_managers(node) for node in architecture.nodes.values()}
 
     def list_waits(self) -> list[Wait]:
-        """Return all waits, those that say the same only once: in the order of what is written."""
+        """Return all waits, those that say the same only once: by the names of the steps, so that lists in another order change nothing."""
         waits: dict[tuple[str, str, WaitReason], Wait] = {}
         for wait in (*self._list_written_waits(), *self._list_data_waits()):
             waits.setdefault((wait.awaited, wait.waiting, wait.reason), wait)
-        return list(waits.values())
+        return [waits[key] for key in sorted(waits)]
 
     def find_nodes(self, target: StartTarget) -> Iterator[str]:
         """Yield the nodes that are meant where a start-up names a node or a component."""

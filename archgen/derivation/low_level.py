@@ -25,7 +25,7 @@ from archgen.derivation.port_endpoints import (
     flow_of_use,
     index_writers,
 )
-from archgen.derivation.wire.running_state import complete_states
+from archgen.derivation.wire.running_state import complete_states, list_discovery_servers
 from archgen.derivation.wire.wire_names import NodeNames
 from archgen.frozen import dataclass, field, replace
 from archgen.model.architecture import Architecture
@@ -36,6 +36,7 @@ from archgen.model.message_types import ConceptualType
 from archgen.model.node import Endpoint, FlowKind, Node, PortUse, Qos, Topic, UseKind
 from archgen.model.port_media import MEMORY, nature_of, uses_ros
 from archgen.model.runtime_facts import TRANSFORM_MESSAGE
+from archgen.model.start_up import ReadyConditions, StartUp
 
 _Port = TypeVar("_Port", Input, Output)
 
@@ -251,6 +252,7 @@ def derive_low_level(architecture: Architecture, memory: DerivedParts | None = N
     memory = memory or DerivedParts()
     architecture = name_ports_by_parameters(mark_inner_memory(architecture))
     nodes = dict(architecture.nodes) | {node.id: node for node in _make_planned_nodes(architecture, memory)}
+    nodes |= {node.id: node for node in _make_discovery_servers(architecture, nodes)}
     with_planned = replace(architecture, nodes=nodes)
     shared_topics = ros_names.shared_topic_names(architecture.shared_topics)
     memory.start_version(architecture, shared_topics)
@@ -380,6 +382,21 @@ def _make_planned_node(component: Component, name: str) -> Node:
         timing={component.id: component.timing} if component.timing else {},
         written=False,
     )
+
+
+def _make_discovery_servers(architecture: Architecture, nodes: Collection[str]) -> Iterator[Node]:
+    """Yield the programs by which the nodes of all hosts find one another."""
+    for number, host in enumerate(list_discovery_servers(architecture)):
+        names = (f"{host.id}_discovery_server{'_' * length}" for length in range(len(nodes) + 1))
+        yield Node(
+            id=next(each for each in names if each not in nodes),
+            title=f"Discovery server of {host.title}",
+            kinds=("program",),
+            command=("fastdds", "discovery", "-i", str(number), "-p", str(host.discovery_server)),
+            host=host.id,
+            start=StartUp(phase="network", ready=ReadyConditions(log="Server is running"), respawn=True),
+            written=False,
+        )
 
 
 def _needs_ros(component: Component) -> bool:

@@ -29,6 +29,8 @@ class Host:
     description: str | None = None
     address: str | None = None
     """Its name or number in the network, None where its id is its name."""
+    discovery_server: int | None = None
+    """The port of the discovery server that runs on it."""
     environment: Mapping[str, str] = field(default_factory=dict)
     """Variables with which all processes on it are started."""
     tags: tuple[str, ...] = ()

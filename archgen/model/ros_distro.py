@@ -15,6 +15,11 @@ def is_ros_1(distro: str | None) -> bool:
     return distro in ROS_1_DISTROS
 
 
+def knows_super_clients(distro: str | None) -> bool:
+    """Whether what looks at nodes sees those that a discovery server joins: Fast DDS 2.13 and later, in ROS 2 since Jazzy."""
+    return distro not in PAST_DISTROS | {"humble"}
+
+
 def can_name_peers(distro: str | None) -> bool:
     """Whether nodes of a distribution find those of other hosts by addresses in the environment: ROS 2 since Iron."""
     return distro not in (PAST_DISTROS - {"iron"}) | {"humble"}

@@ -12,6 +12,7 @@ from pathlib import Path
 import pytest
 
 from archgen.bringup.dds_profiles import find_dds_profile, record_dds_profile
+from archgen.bringup.start_plan import find_looking_variables, make_start_plan
 from archgen.derivation.wire.running_state import list_peers
 from archgen.model.architecture import Architecture
 from tests.ros_environment import ROS_FOLDER, make_ros_python, ros_environment
@@ -52,7 +53,11 @@ def test_what_runs_nothing_and_has_no_address_is_no_peer(derived: Derived) -> No
         ("jazzy", "", "itself", None),
         ("jazzy", "", "everywhere", None),
         ("jazzy", "", None, None),
-        ("jazzy", "RMW_IMPLEMENTATION: rmw_cyclonedds_cpp", "head", None),
+        ("jazzy", "RMW_IMPLEMENTATION: rmw_cyclonedds_cpp", "head", ("CYCLONEDDS_URI", ("127.0.0.1", "10.0.0.1"), ())),
+        ("humble", "RMW_IMPLEMENTATION: rmw_cyclonedds_cpp", "head", ("CYCLONEDDS_URI", ("127.0.0.1", "10.0.0.1"), ("127.0.0.1", "10.0.0.2", "arm.local"))),
+        ("jazzy", "RMW_IMPLEMENTATION: rmw_cyclonedds_cpp", "base", None),
+        ("jazzy", "RMW_IMPLEMENTATION: rmw_zenoh_cpp", "head", None),
+        ("jazzy", "CYCLONEDDS_URI: file:///etc/own.xml", "head", None),
         ("jazzy", "FASTRTPS_DEFAULT_PROFILES_FILE: /etc/own.xml", "head", None),
         ("jazzy", "ROS_DISCOVERY_SERVER: '10.0.0.1:11811'", "head", None),
         ("noetic", "", "head", None),
@@ -61,6 +66,81 @@ def test_what_runs_nothing_and_has_no_address_is_no_peer(derived: Derived) -> No
 def test_who_has_a_profile(derived: Derived, distro: str, environment: str, host: str | None, expected: object) -> None:
     profile = find_dds_profile(derived(ROBOT.format(distro=distro, environment=environment)), host)
     assert (profile and (profile.variable, profile.interfaces, profile.peers)) == expected
+
+
+CYCLONE_PROFILE = """\
+<?xml version="1.0" encoding="UTF-8"?>
+<!-- Which interface DDS uses, and whom it asks for others: from hosts, addresses and links. Made by archgen. -->
+<CycloneDDS xmlns="https://cdds.io/config">
+  <Domain Id="any">
+    <General>
+      <Interfaces>
+        <NetworkInterface address="10.0.0.1"/>
+      </Interfaces>
+      <AllowMulticast>false</AllowMulticast>
+    </General>
+    <Discovery>
+      <ParticipantIndex>auto</ParticipantIndex>
+      <MaxAutoParticipantIndex>100</MaxAutoParticipantIndex>
+      <Peers>
+        <Peer Address="10.0.0.1"/>
+        <Peer Address="127.0.0.1"/>
+        <Peer Address="10.0.0.2"/>
+        <Peer Address="arm.local"/>
+      </Peers>
+    </Discovery>
+  </Domain>
+</CycloneDDS>
+"""
+"""By hand it was held against the schemas of Cyclone DDS 0.9.1, 0.10.5 and 11.0, and its library read it."""
+
+
+def test_cyclone_dds_is_told_in_its_own_words(derived: Derived) -> None:
+    environment = "RMW_IMPLEMENTATION: rmw_cyclonedds_cpp"
+    record = record_dds_profile(derived(ROBOT.format(distro="humble", environment=environment)), "head")
+    assert record == {"variable": "CYCLONEDDS_URI", "scheme": "file://", "text": CYCLONE_PROFILE}
+
+
+SERVED_ROBOT = """
+ros: {distro: DISTRO, discovery: server}
+hosts: {head: {address: 10.0.0.1, discovery_server: 11811}, base: {address: 10.0.0.2}, spare: {discovery_server: 11812}}
+links: {cable: [head, base]}
+groups: {g: {components: {a: {outputs: {o: std_msgs/msg/Bool}}, b: {inputs: {o: a.o}}}}}
+nodes: {a: {implements: a, host: head}, b: {implements: b, host: base, start: {environment: {ROS_SUPER_CLIENT: "TRUE"}}}}
+"""
+
+
+def test_a_discovery_server_starts_first_and_every_node_asks_it(derived: Derived) -> None:
+    plan = make_start_plan(derived(SERVED_ROBOT.replace("DISTRO", "jazzy")))
+    assert [(step.id, step.phase, step.host, step.kind) for step in plan.steps] == [
+        ("head_discovery_server", "network", "head", "program"),
+        ("spare_discovery_server", "network", "spare", "program"),
+        ("a", "components", "head", "node"),
+        ("b", "components", "base", "node"),
+    ]
+    assert plan.steps[1].command == ("fastdds", "discovery", "-i", "1", "-p", "11812")
+    servers = {"ROS_DISCOVERY_SERVER": "10.0.0.1:11811;spare:11812"}
+    assert [step.environment for step in plan.steps[2:]] == [
+        servers | {"ROS_SUPER_CLIENT": "FALSE"},
+        servers | {"ROS_SUPER_CLIENT": "TRUE"},
+    ]
+    # What looks whether nodes are up is told of all of them.
+    assert find_looking_variables(plan.steps[:3]) == servers | {"ROS_SUPER_CLIENT": "TRUE"}
+
+
+@pytest.mark.parametrize("distro", ["humble", "noetic"])
+def test_without_a_way_to_look_there_is_no_discovery_server(derived: Derived, distro: str) -> None:
+    plan = make_start_plan(derived(SERVED_ROBOT.replace("DISTRO", distro)))
+    assert [(step.id, "ROS_DISCOVERY_SERVER" in step.environment) for step in plan.steps] == [
+        ("a", False),
+        ("b", False),
+    ]
+
+
+def test_a_discovery_server_takes_no_name_of_a_node(derived: Derived) -> None:
+    robot = SERVED_ROBOT.replace("DISTRO", "jazzy").replace("nodes: {a:", "nodes: {head_discovery_server:")
+    names = [step.id for step in make_start_plan(derived(robot)).steps]
+    assert names == ["head_discovery_server_", "spare_discovery_server", "head_discovery_server", "b"]
 
 
 def _write_profile(derived: Derived, file: Path, distro: str, host: str) -> str:

@@ -59,7 +59,7 @@ def test_sources_before_readers_servers_before_clients_containers_before_nodes(d
         "localiser": ["laser (data)"],
         "maps": [],
         "planner": ["box (container)", "maps (service)", "localiser (data)", "manager (managed)"],
-        "control": ["planner (sampled)", "localiser (sampled)"],
+        "control": ["localiser (sampled)", "planner (sampled)"],
     }
     assert dropped(plan) == [
         "manager waits for maps (manages): phases",
@@ -277,7 +277,7 @@ nodes:
         "right": [],
         "second": ["right (after)"],
         "b": ["left (after)", "right (after)", "second (after)"],
-        "c": ["second (after)", "b (after)"],
+        "c": ["b (after)", "second (after)"],
     }
 
 
@@ -346,3 +346,14 @@ nodes: {a: {implements: a, package: p, executable: a, serves: {o: {name: /turn, 
         ("spin/_action/send_goal", "/turn/_action/send_goal"),
         ("spin/_action/cancel_goal", "/turn/_action/cancel_goal"),
     ]
+
+
+def test_sources_in_another_order_change_no_plan(derived: Callable[[str], Architecture]) -> None:
+    """Generated scripts say for whom a step waits: what moves in a list changes none of them."""
+    text = """
+        groups: {g: {components: {left: {outputs: {o: T}}, right: {outputs: {o: T}}, guard: {inputs: {arms: [left.o, right.o]}}}}}
+        types: {T: std_msgs/msg/Bool}
+        """
+    plans = [make_start_plan(derived(each)) for each in (text, text.replace("[left.o, right.o]", "[right.o, left.o]"))]
+    assert [each.awaited for each in plans[0].steps[-1].awaited] == ["left", "right"]
+    assert plans[0].steps == plans[1].steps

@@ -43,9 +43,9 @@ Phase components
       run: ros2 run rviz2 rviz2 --ros-args -r __node:=display
       with DISPLAY=:0
       waits for navigation_manager (as written; activates what it reads: navigation.planner.path)
+      waits for amcl (reads navigation.localisation.pose)
       waits for map_server (reads navigation.map_server.map)
       waits for planner_server (reads navigation.planner.path)
-      waits for amcl (reads navigation.localisation.pose)
       waits for lifecycle_manager (activates what it reads: navigation.map_server.map)
 
 Given up, so that nothing waits for itself:

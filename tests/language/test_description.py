@@ -213,6 +213,7 @@ def test_a_key_is_in_the_record_unless_it_says_why_not(
         "tags",
         "scheduling",
         "address",
+        "discovery_server",
         "environment",
         "properties",
         "hints",

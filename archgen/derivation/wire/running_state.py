@@ -17,14 +17,17 @@ from archgen.derivation.wire.qos_overrides import QosOverride, list_overrides, o
 from archgen.diagnostics import NO_SPAN, Span
 from archgen.frozen import dataclass, replace
 from archgen.model.architecture import Architecture
-from archgen.model.deployment import Container
+from archgen.model.deployment import Container, Host
 from archgen.model.node import Clock, Endpoint, Evidence, Node, RunState, UseKind
 from archgen.model.parameter import format_parameter
 from archgen.model.parameter_values import EffectiveParameter, find_effective_parameters
-from archgen.model.ros_distro import can_name_peers, is_ros_1
+from archgen.model.ros_distro import can_name_peers, is_ros_1, knows_super_clients
 from archgen.model.start_up import NO_START, LifecycleState
 
 DOMAIN_VARIABLE = "ROS_DOMAIN_ID"
+SUPER_CLIENT_VARIABLE = "ROS_SUPER_CLIENT"
+"""What looks at all nodes is told of all by a discovery server; the nodes themselves only of those that they meet."""
+FAST_DDS = "rmw_fastrtps"
 CLOCK_PARAMETER = "use_sim_time"
 _MANAGER_PROGRAM = "lifecycle_manager"
 """What the package, the program or the class of a lifecycle manager has in its name."""
@@ -66,10 +69,22 @@ def find_environment(architecture: Architecture, node: Node | Container) -> Mapp
 
 def list_discovery(architecture: Architecture, host_id: str | None) -> dict[str, str]:
     """Return the variables by which nodes of a host find those of others: nothing where multicast does it."""
+    if servers := list_discovery_servers(architecture):
+        addresses = ";".join(f"{each.network_name}:{each.discovery_server}" for each in servers)
+        return {"ROS_DISCOVERY_SERVER": addresses, SUPER_CLIENT_VARIABLE: "FALSE"}
     if architecture.ros_discovery != "peers" or not can_name_peers(architecture.distro):
         return {}
     names = list_peers(architecture, host_id)
     return {"ROS_AUTOMATIC_DISCOVERY_RANGE": "LOCALHOST", **({"ROS_STATIC_PEERS": ";".join(names)} if names else {})}
+
+
+def list_discovery_servers(architecture: Architecture) -> tuple[Host, ...]:
+    """Return the hosts whose discovery servers the nodes of all hosts ask; none where they read no addresses of servers."""
+    if architecture.ros_discovery != "server" or not knows_super_clients(architecture.distro):
+        return ()
+    written = (str(each.value) for each in architecture.ros_environment if each.name == "RMW_IMPLEMENTATION")
+    is_fast_dds = next(written, FAST_DDS).startswith(FAST_DDS)
+    return tuple(host for host in architecture.hosts.values() if is_fast_dds and host.discovery_server)
 
 
 def list_peers(architecture: Architecture, host_id: str | None) -> tuple[str, ...]:

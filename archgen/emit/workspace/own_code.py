@@ -11,6 +11,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Collection, Iterable, Iterator, Mapping
+from itertools import product
 
 from archgen.diagnostics import find_closest
 from archgen.emit.workspace.python_code import (
@@ -346,9 +347,8 @@ class _PythonJudge:
             is_one_of_several = bool(new.source) and not name.endswith(new.element.rpartition(".")[2])
             unsaid = [each for each in at if each.message is None or is_one_of_several]
             digest = "".join(dict.fromkeys(each.digest for each in unsaid if new.message))
-            wrong = [
-                each for each in at if each.message and new.message and not names_message(each.message, new.message)
-            ]
+            said = [each for each in at if each.message and new.message]
+            wrong = [each for each in said if not names_message(each.message or ("", ""), new.message)]
             for each in wrong:
                 written = f"{each.message[0]}/{each.message[1]}" if each.message else ""
                 self._tell(f"`{name}` has `{new.message}` now, and not `{written}`", each)
@@ -362,8 +362,8 @@ class _PythonJudge:
                 if before and after and before != after
             ]
             if changes and is_pending:
-                for each in unsaid:
-                    for words in changes:
+                for each, words in product(unsaid, changes):
+                    if each not in wrong or f"`{new.message}` now" not in words:
                         self._tell(f"{words}: what is written here was written for that", each)
                 self._meanings[name] = self._recorded[name]
             else:

@@ -25,7 +25,7 @@ from archgen.plugin.starting import (
     StartStep,
     describe_dropped,
     describe_ready,
-    find_network_variables,
+    find_looking_variables,
     find_wanted_steps,
     format_seconds,
     has_substitution,
@@ -219,7 +219,7 @@ def _record_host(
         "place": write_place(element.at) if element else "",
         "title": element.title if element else "Computer of what has no host",
         "address": element.network_name if element else host or "localhost",
-        "network": [{"name": name, "value": value} for name, value in find_network_variables(own_steps).items()],
+        "network": [{"name": name, "value": value} for name, value in find_looking_variables(own_steps).items()],
         "dds_profile": record_dds_profile(architecture, host),
         "phases": list(dict.fromkeys(step.phase for step in shown_steps)),
         "steps": [

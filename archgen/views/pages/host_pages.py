@@ -36,6 +36,7 @@ def _host_page(lookup: Lookup, host: Host, keep_drawn: FigureFilter) -> Page:
     facts = [
         ("Cores", inline_text.count_to_inlines(host.cores)),
         ("Address", inline_text.to_inlines(host.address or "")),
+        ("Discovery server", inline_text.to_inlines(f"port {host.discovery_server}" if host.discovery_server else "")),
         ("Scheduling", inline_text.to_inlines(order) if order else ()),
         ("Environment", inline_text.join_inlines((Text(f"{each[0]}={each[1]}"),) for each in host.environment.items())),
         ("Tags", inline_text.to_inlines(", ".join(host.tags)) if host.tags else ()),

@@ -340,6 +340,24 @@ def test_annotations_count(farm: Path, backend: str) -> None:
     assert generate(farm, backend, ROBOT, 0) == []
 
 
+def test_a_message_that_an_annotation_names_is_told_once(farm: Path, backend: str) -> None:
+    """Of a method of one of several sources both are known: what it was, and what is written at it."""
+    two = ("arms: [arms.left.state]", "arms: [arms.left.state, arms.right.state]")
+    methods = "".join(
+        f"    def receive_arms_{side}(self, message: 'sensor_msgs.msg.JointState'):\n        pass\n\n"
+        for side in ("left", "right")
+    )
+    own = GUARD.replace("    def receive_arms(", f"{methods}    def hear_arms(")
+    find_own(farm, "base/guard", backend).write_text(own, encoding="utf-8")
+    assert generate(farm, backend, change(ROBOT, two), 0) == []
+    changed = change(ROBOT, two, ("State: sensor_msgs/msg/JointState", "State: std_msgs/msg/Float64"))
+    told = [line.partition("guard.py:")[2] for line in generate(farm, backend, changed, 1) if "guard.py" in line]
+    assert [line.partition(": ")[2] for line in told] == [
+        f"`receive_arms_{side}` has `std_msgs/msg/Float64` now, and not `sensor_msgs/JointState`"
+        for side in ("left", "right")
+    ]
+
+
 ODD = {
     "no Python": ("def broken(:\n", 1, ["error: guard.py:1:1: cannot be held against the model: it is no Python"]),
     "deep": ("x = " + "(" * 5000, 1, ["error: guard.py:1:1: cannot be held against the model: it is"]),
