@@ -18,7 +18,7 @@ help:
 	@echo "make covered   write tests/covered_by.yaml anew, by what the tests execute"
 	@echo "make size      count the package's lines by what they are for"
 	@echo "make test-all  all tests: also those that take longer, and those that need browsers, an office, compilers, judges or ROS"
-	@echo "make properties  the property tests again, on new random draws each time"
+	@echo "make properties  the property tests again, on new random draws each time, and the samples that make test-all leaves out"
 	@echo "make mutants   change one condition at a time, and see which changes no test notices"
 	@echo "make fuzz      feed changed fixtures to all readers and verbs, guided by coverage: SECONDS=600 SEED=1 TARGETS="
 	@echo "make bench     measure speed and scale"

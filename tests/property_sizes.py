@@ -1,5 +1,7 @@
 """What a property test tries: a quarter of its examples in `make test`, all where slow tests are selected; the same each time.
 
+Of samples that are tests of their own, `make test` tries the first, `make test-all` some, and `make properties` the others.
+
 A property test writes `@settings(max_examples=count_examples(400))`; tests/conftest.py chooses the profile by pytest's
 own `-m`, before any test is imported. With fewer examples the test is the same, so it needs no mark of its own.
 """
@@ -18,7 +20,9 @@ QUICK_PROFILE = "quick"
 _QUICK_SHARE = 4
 """The quick profile tries one example of so many."""
 _QUICK_SEED_SHARE = 8
-"""`make test` tries one seed of so many: the others are tests of their own, and marked as slow."""
+"""`make test` tries one seed of so many: the others are tests of their own."""
+_SEED_SHARE = 2
+"""`make test-all` tries one seed of so many, `make properties` the others."""
 
 # The same draws in each run: a pull request must not turn red over a fault that was there before it. New draws are for those
 # who look for such faults: `make properties`.
@@ -46,19 +50,23 @@ def count_examples(full_count: int) -> int:
 
 
 def list_seeds(full_count: int) -> list[int | pytest.ParameterSet]:
-    """Return the numbers below `full_count` for a test that draws by one: an eighth of them in `make test`, the others slow."""
+    """Return the numbers below `full_count` for a test that draws by one: an eighth for `make test`, half for `make test-all`."""
     quick_count = max(1, full_count // _QUICK_SEED_SHARE)
-    return [
-        *range(quick_count),
-        *(pytest.param(seed, marks=pytest.mark.slow) for seed in range(quick_count, full_count)),
-    ]
+    shown_count = max(quick_count, full_count // _SEED_SHARE)
+    return [*range(quick_count), *mark_slow_samples(range(quick_count, full_count), shown_count - quick_count)]
 
 
-def mark_further_samples(samples: Iterable[object]) -> list[object]:
-    """Mark all but the first as slow, for a test that takes seconds for each: `make test` tries it on the first.
+def mark_further_samples(samples: Iterable[object], count: int | None = None) -> list[object]:
+    """Return samples for a test that takes seconds for each: `make test` tries it on the first, `make test-all` on `count`.
 
-    A sample of several parameters is a tuple.
+    All that are beyond those are for `make properties`. A sample of several parameters is a tuple.
     """
     first, *others = samples
-    others_values = (sample if isinstance(sample, tuple) else (sample,) for sample in others)
-    return [first, *(pytest.param(*values, marks=pytest.mark.slow) for values in others_values)]
+    return [first, *mark_slow_samples(others, len(others) if count is None else count - 1)]
+
+
+def mark_slow_samples(samples: Iterable[object], count: int) -> list[pytest.ParameterSet]:
+    """Mark samples of which `make test-all` tries the first `count`, and `make properties` the others."""
+    values = [sample if isinstance(sample, tuple) else (sample,) for sample in samples]
+    further = [pytest.param(*each, marks=pytest.mark.hypothesis) for each in values[count:]]
+    return [*(pytest.param(*each, marks=pytest.mark.slow) for each in values[:count]), *(further if DRAWS_ANEW else ())]

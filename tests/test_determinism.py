@@ -15,6 +15,7 @@ import pytest
 from tests import readable
 from tests.determined_project import make_every_output_once, make_project, run_every_output
 from tests.judged_projects import SAID_BY_PACKING
+from tests.property_sizes import mark_slow_samples
 from tests.running import RAMCIP, REVISION, ROOT, archgen, archgen_here, contents
 
 ELSEWHERE = {
@@ -186,6 +187,8 @@ FOLDERS = (
     "-o",
     ".hidden",
 )
+_SHOWN_SETTINGS = 8
+"""So many settings have each locale, time zone, folder, mask and number of processors."""
 
 
 @pytest.fixture(scope="module")
@@ -205,8 +208,7 @@ def every_output(tmp_path_factory: pytest.TempPathFactory, worker_id: str) -> di
     return make_every_output_once(tmp_path_factory, worker_id)
 
 
-@pytest.mark.slow
-@pytest.mark.parametrize("number", range(20))
+@pytest.mark.parametrize("number", mark_slow_samples(range(20), _SHOWN_SETTINGS))
 def test_twenty_settings_make_the_same_bytes_of_every_output(
     number: int, every_output: dict[str, bytes], tmp_path: Path, locales: Path
 ) -> None:

@@ -21,6 +21,7 @@ import pytest
 import yaml
 
 from tests.fault_injection import READING_KINDS, SIGNALS, Fault, FaultyArchgen, FaultyRun
+from tests.property_sizes import DRAWS_ANEW
 from tests.repositories import commit, git, repository
 from tests.running import ROOT
 
@@ -129,8 +130,8 @@ QUICK = ("pack", "generate again", "new", "import --merge", "merge-driver")
 """Verbs of which `make test` tries some steps, too: they stand for all ways in which files are written."""
 
 
-STEPS = int(os.environ.get("ARCHGEN_FAULT_STEPS", "3"))
-"""How many steps of each verb the slow tests try with each fault."""
+STEPS = int(os.environ.get("ARCHGEN_FAULT_STEPS", "8" if DRAWS_ANEW else "2"))
+"""How many steps of each verb the slow tests try with each fault, and `make properties`."""
 
 
 @pytest.fixture(scope="module")
@@ -228,7 +229,8 @@ def stage(request: pytest.FixtureRequest, faulty: FaultyArchgen, tmp_path: Path)
 def cases(*left_out: str) -> Callable[[Callable[..., None]], Callable[..., None]]:
     """Give a test each case: a few steps of it, and all of them in slow tests."""
     few = [pytest.param(name, 1, id=name) for name in QUICK]
-    many = [pytest.param(name, STEPS, id=f"{name}: more", marks=pytest.mark.slow) for name in CASES]
+    marks = (pytest.mark.slow, pytest.mark.hypothesis)
+    many = [pytest.param(name, STEPS, id=f"{name}: more", marks=marks) for name in CASES]
     wanted = [each for each in (*few, *many) if each.values[0] not in left_out]
     return pytest.mark.parametrize(("stage", "count"), wanted, indirect=["stage"])
 

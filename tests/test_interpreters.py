@@ -22,6 +22,8 @@ from tests.running import RAMCIP, REVISION, ROOT, contents, made_once
 
 pytestmark = pytest.mark.build
 VERSIONS = ("3.11", "3.12", "3.13", "3.14")
+NEWEST = "newest"
+"""The last of these versions that is found beside the one that runs the tests."""
 OTHER = Path("ramcip")
 """Stands for the changed copy of the case study."""
 PRINTED = (
@@ -59,6 +61,14 @@ def find_interpreter(version: str) -> Path | None:
         *([Path(named)] if named else []),
     ]
     return next((python for python in candidates if version_of(python) == version), None)
+
+
+def find_newest_version() -> str:
+    """Return the newest version that another Python than that of the tests has, or where there is none the newest one."""
+    others = (
+        version for version in reversed(VERSIONS) if find_interpreter(version) not in {None, Path(sys.executable)}
+    )
+    return next(others, VERSIONS[-1])
 
 
 def version_of(python: Path) -> str:
@@ -104,21 +114,26 @@ def printed(tmp_path_factory: pytest.TempPathFactory, worker_id: str) -> Path:
     return made_once(place, make)
 
 
-@pytest.fixture(scope="module", params=VERSIONS)
-def python(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """Find a Python and give it the libraries that archgen stands on."""
-    interpreter = find_interpreter(request.param)
+@pytest.fixture(scope="module")
+def python(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory, worker_id: str) -> Path:
+    """Find a Python and give it the libraries that archgen stands on, once for all workers."""
+    version = find_newest_version() if request.param == NEWEST else request.param
+    interpreter = find_interpreter(version)
     if interpreter is None:
-        pytest.skip(f"no Python {request.param} was found here")
+        pytest.skip(f"no Python {version} was found here")
     if interpreter == Path(sys.executable):
-        pytest.skip(f"Python {request.param} runs the tests: the others are held against it")
-    environment = tmp_path_factory.mktemp("environment") / "venv"
-    # Debian's own Python has no pip of its own.
-    run(interpreter, "-m", "venv", "--without-pip", environment)
-    program = environment / "bin" / "python"
-    pip = (sys.executable, "-m", "pip", "--python", program)
-    run(*pip, "install", "--quiet", "--only-binary", ":all:", *pinned_libraries())
-    assert version_of(program) == request.param
+        pytest.skip(f"Python {version} runs the tests: the others are held against it")
+    base = tmp_path_factory.getbasetemp()
+    place = base if worker_id == "master" else base.parent
+
+    def make(folder: Path) -> None:
+        # Debian's own Python has no pip of its own.
+        run(interpreter, "-m", "venv", "--without-pip", folder)
+        pip = (sys.executable, "-m", "pip", "--python", folder / "bin" / "python")
+        run(*pip, "install", "--quiet", "--only-binary", ":all:", *pinned_libraries())
+
+    program = made_once(place / f"python-{version}", make) / "bin" / "python"
+    assert version_of(program) == version
     return program
 
 
@@ -132,7 +147,8 @@ def run(*words: str | Path) -> bytes:
     return b"%b\nstatus %d" % (done.stdout + done.stderr, done.returncode)
 
 
-def test_every_python_makes_the_same_files(python: Path, ramcip: Path, tmp_path: Path) -> None:
+@pytest.mark.parametrize("python", [NEWEST], indirect=True)
+def test_another_python_makes_the_same_files_of_the_case_study(python: Path, ramcip: Path, tmp_path: Path) -> None:
     words = ("build", RAMCIP, "--backend", "wiki", "--revision", REVISION, "--no-history", "-o", tmp_path / "out")
     cache_of_its_own = ("env", f"XDG_CACHE_HOME={tmp_path / 'cache'}")
     run(*cache_of_its_own, python, "-m", "archgen", *words)
@@ -141,6 +157,7 @@ def test_every_python_makes_the_same_files(python: Path, ramcip: Path, tmp_path:
     assert [path for path, data in expected.items() if made[path] != data] == []
 
 
+@pytest.mark.parametrize("python", VERSIONS, indirect=True)
 def test_every_python_prints_the_same(python: Path, printed: Path) -> None:
     for number, words in enumerate(PRINTED):
         assert run(python, *name_call(words, printed)) == (printed / str(number)).read_bytes(), words
@@ -151,6 +168,7 @@ def name_call(words: Sequence[str | Path], printed: Path) -> tuple[str | Path, .
     return ("-m", "archgen", *(printed / OTHER if word == OTHER else word for word in words))
 
 
+@pytest.mark.parametrize("python", VERSIONS, indirect=True)
 def test_every_python_makes_the_same_bytes_of_every_output(
     python: Path, tmp_path: Path, tmp_path_factory: pytest.TempPathFactory, worker_id: str
 ) -> None:

@@ -1,7 +1,7 @@
 """Every module with logic is imported by a test of its room, or tests/covered_by.yaml names the test that covers it.
 
-What the table says is proved by running: the slow test runs each test that it names, and looks whether the module's
-functions were executed. Before that, cheaply: the test exists, and imports lead from it to the module.
+What the table says is proved by running: slow tests run each test that it names, and look whether the module's functions were
+executed. Before that, cheaply: the test exists, and imports lead from it to the module.
 """
 
 from __future__ import annotations
@@ -28,6 +28,7 @@ from tests.enough_executed import (
     executed_share,
 )
 from tests.module_graph import find_imports, find_reachable, is_test, list_modules, read_source
+from tests.property_sizes import mark_slow_samples
 from tests.running import ROOT, made_once
 
 TABLE = ROOT / "tests" / "covered_by.yaml"
@@ -80,6 +81,8 @@ def test_imports_lead_from_the_test_to_what_it_covers(test: str) -> None:
     assert sorted(set(COVERED_BY[test]) - find_reachable(name)) == []
 
 
+_SHARE = 4
+"""`make test-all` runs one row of so many, `make properties` the others: to run them all is to run a third of `make test` again."""
 _ROWS_AT_ONCE = 12
 """Files of tests that share a process: to start it, and to import all of archgen under measurement, takes seconds."""
 Shares = dict[str, dict[str, float]]
@@ -181,8 +184,13 @@ def _find_too_small(shares: Mapping[str, float]) -> dict[str, float]:
     return {module: round(share, 2) for module, share in shares.items() if share < LEAST_EXECUTED_SHARE}
 
 
-@pytest.mark.slow
-@pytest.mark.parametrize("test", COVERED_BY)
+def _begin_with_each(step: int) -> list[str]:
+    """Return the rows with every so manieth first: of each room some."""
+    rows = list(COVERED_BY)
+    return [row for first in range(step) for row in rows[first::step]]
+
+
+@pytest.mark.parametrize("test", mark_slow_samples(_begin_with_each(_SHARE), len(COVERED_BY) // _SHARE))
 def test_the_test_executes_what_it_covers(
     test: str, request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory, worker_id: str
 ) -> None:

@@ -10,6 +10,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from tests import property_sizes
 from tests.property_sizes import (
     QUICK_PROFILE,
     choose_profile,
@@ -65,28 +66,43 @@ def test_no_property_fails_for_the_time_that_it_takes(pytestconfig: pytest.Confi
     assert settings(max_examples=count_examples(400)).deadline is None
 
 
-def _split_by_mark(samples: Iterable[object]) -> tuple[list[object], list[tuple[object, ...]]]:
-    """Return the samples that `make test` tries, and those that only `make test-all` does."""
-    plain, slow = list[object](), list[tuple[object, ...]]()
+def _sort_by_mark(samples: Iterable[object]) -> dict[str, list[object]]:
+    """Return the samples that `make test` tries, those that `make test-all` does (`slow`), and those of `make properties`."""
+    sorted_samples = dict[str, list[object]]()
     for sample in samples:
-        if isinstance(sample, pytest.ParameterSet):
-            assert [mark.name for mark in sample.marks] == ["slow"]
-            slow.append(tuple(sample.values))
-        else:
-            plain.append(sample)
-    return plain, slow
+        is_marked = isinstance(sample, pytest.ParameterSet)
+        marks = [mark.name for mark in sample.marks] if is_marked else ["quick"]
+        sorted_samples.setdefault(" ".join(marks), []).append(sample.values if is_marked else sample)
+    return sorted_samples
 
 
-@pytest.mark.parametrize(("count", "quick_count"), [(1, 1), (3, 1), (16, 2), (40, 5)])
-def test_an_eighth_of_the_seeds_is_tried_at_once_and_none_is_left_out(count: int, quick_count: int) -> None:
-    quick, slow = _split_by_mark(list_seeds(count))
-    assert quick == list(range(quick_count))
-    assert slow == [(seed,) for seed in range(quick_count, count)]
+def _list_single(numbers: Iterable[int]) -> list[tuple[int]]:
+    return [(number,) for number in numbers]
 
 
-def test_the_first_sample_is_tried_at_once_and_none_is_left_out() -> None:
-    assert _split_by_mark(mark_further_samples(["a", "b", "c"])) == (["a"], [("b",), ("c",)])
-    assert _split_by_mark(mark_further_samples([(1, "a"), (2, "b")])) == ([(1, "a")], [(2, "b")])
+@pytest.mark.parametrize(("count", "quick_count", "shown_count"), [(1, 1, 1), (3, 1, 1), (16, 2, 8), (40, 5, 20)])
+def test_an_eighth_of_the_seeds_is_tried_at_once_and_half_by_all_tests(
+    count: int, quick_count: int, shown_count: int, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    shown = {"quick": [*range(quick_count)], "slow": _list_single(range(quick_count, shown_count))}
+    monkeypatch.setattr(property_sizes, "DRAWS_ANEW", False)
+    assert {"slow": [], **_sort_by_mark(list_seeds(count))} == shown
+    # `make properties` leaves none out.
+    monkeypatch.setattr(property_sizes, "DRAWS_ANEW", True)
+    further = _list_single(range(shown_count, count))
+    assert {"slow": [], "hypothesis": [], **_sort_by_mark(list_seeds(count))} == {**shown, "hypothesis": further}
+
+
+@pytest.mark.parametrize("draws_anew", [False, True])
+def test_the_first_sample_is_tried_at_once_and_none_is_left_out(
+    draws_anew: bool,  # noqa: FBT001 - a parameter
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    monkeypatch.setattr(property_sizes, "DRAWS_ANEW", draws_anew)
+    assert _sort_by_mark(mark_further_samples("abc")) == {"quick": ["a"], "slow": [("b",), ("c",)]}
+    assert _sort_by_mark(mark_further_samples([(1, "a"), (2, "b")])) == {"quick": [(1, "a")], "slow": [(2, "b")]}
+    further = {"hypothesis": [("c",), ("d",)]} if draws_anew else {}
+    assert _sort_by_mark(mark_further_samples("abcd", 2)) == {"quick": ["a"], "slow": [("b",)], **further}
 
 
 def _draw() -> list[tuple[str, int]]:

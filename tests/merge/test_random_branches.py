@@ -26,6 +26,7 @@ from archgen.pipeline import CheckedProject, check_project
 from archgen.products.merge_breaks import BRANCH_JUDGES
 from archgen.project import load_project
 from tests import repositories
+from tests.property_sizes import mark_slow_samples
 
 _BENCHMARK = import_module("benchmarks.generate")
 _CASE_STUDY = Path(__file__).resolve().parents[2] / "example_ramcip"
@@ -217,11 +218,14 @@ def try_pair(folder: Path, version: JudgedVersion, rng: random.Random, *, is_clo
     return "merged"
 
 
-@pytest.mark.slow
-@pytest.mark.parametrize(
-    ("name", "numbers"),
-    [*(("generated", range(first, first + 12)) for first in range(0, 60, 12)), ("case study", range(3))],
-)
+_BLOCKS = [
+    ("case study", range(1)),
+    *(("generated", range(first, first + 12)) for first in range(0, 60, 12)),
+    ("case study", range(1, 3)),
+]
+
+
+@pytest.mark.parametrize(("name", "numbers"), mark_slow_samples(_BLOCKS, 3))
 def test_no_pair_of_branches_merges_into_what_neither_says(tmp_path: Path, name: str, numbers: range) -> None:
     folder = tmp_path / "robot"
     if name == "generated":

@@ -125,7 +125,7 @@ def hold_executors(seeds: range) -> int:
     return held_count
 
 
-@pytest.mark.parametrize("first", mark_further_samples(range(0, 400, 20)))
+@pytest.mark.parametrize("first", mark_further_samples(range(0, 400, 20), 8))
 def test_no_simulation_exceeds_a_bound_of_an_overloaded_executor(first: int) -> None:
     assert hold_executors(range(first, first + 20)) > 150
 

@@ -26,7 +26,7 @@ from tests.timing.random_uses import random_use_system, random_walks
 Held = tuple[str, Fraction | None, TimingValue]
 
 
-@pytest.mark.parametrize("first", mark_further_samples(range(0, 300, 15)))
+@pytest.mark.parametrize("first", mark_further_samples(range(0, 300, 15), 10))
 def test_no_simulation_exceeds_a_bound(first: int) -> None:
     held_count = 0
     for seed in range(first, first + 15):

@@ -169,7 +169,7 @@ def test_threads_that_compute_one_at_a_time_are_not_fair_and_are_served_each() -
     assert found["x"].tier != "fair"
 
 
-@pytest.mark.parametrize("first", mark_further_samples(range(0, 300, 30)))
+@pytest.mark.parametrize("first", mark_further_samples(range(0, 300, 30), 5))
 def test_no_simulated_kernel_exceeds_a_bound(first: int) -> None:
     tiers: dict[str, int] = {}
     for seed in range(first, first + 30):

@@ -12,6 +12,7 @@ from archgen.timing.run_analysis import analyse_architecture
 from archgen.timing.search import proposals
 from archgen.timing.search.proposals import find_proposal, find_short_proposal
 from archgen.timing.search.run_configurations import ConfigurationSpace, RunConfiguration
+from tests.property_sizes import mark_further_samples
 from tests.timing.random_systems import architecture
 from tests.timing.search.late_systems import draw_late_system, propose_for
 from tests.timing.search.trials import bound_with, start_trials
@@ -67,9 +68,7 @@ def _prove_by_rate(seed: int) -> tuple[bool, bool] | None:
     return all(slack is not None and slack >= 0 for slack in slacks), not proposal.best.late
 
 
-@pytest.mark.parametrize(
-    "first_seed", [0, *(pytest.param(seed, marks=pytest.mark.slow) for seed in range(15, 150, 15))]
-)
+@pytest.mark.parametrize("first_seed", mark_further_samples(range(0, 150, 15), 5))
 def test_all_that_priorities_by_rate_prove_is_proven(first_seed: int) -> None:
     answers = [answer for seed in range(first_seed, first_seed + 15) if (answer := _prove_by_rate(seed)) is not None]
     assert all(is_proposed or not is_proven_by_rate for is_proven_by_rate, is_proposed in answers)
