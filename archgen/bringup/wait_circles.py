@@ -15,6 +15,7 @@ from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from heapq import heapify, heappop, heappush
 
 from archgen.bringup.plan_shapes import DroppedWait, Wait, WaitReason
+from archgen.diagnostics import order_naturally
 from archgen.grouping import group_pairs
 from archgen.model.architecture import Architecture, PortEdge
 from archgen.model.graph_search import find_strong_components
@@ -188,7 +189,10 @@ class StartWaits:
         waits: dict[tuple[str, str, WaitReason], Wait] = {}
         for wait in (*self._list_written_waits(), *self._list_data_waits()):
             waits.setdefault((wait.awaited, wait.waiting, wait.reason), wait)
-        return [waits[key] for key in sorted(waits)]
+        return sorted(
+            waits.values(),
+            key=lambda wait: (order_naturally(wait.awaited), order_naturally(wait.waiting), wait.reason),
+        )
 
     def find_nodes(self, target: StartTarget) -> Iterator[str]:
         """Yield the nodes that are meant where a start-up names a node or a component."""

@@ -17,5 +17,12 @@ from archgen.views.start_phrases import (
 
 __all__ = ["DEFAULT_SECONDS", "KIND_WORDS", "SCHEDULING_SCRIPT", "SUBSTITUTION", "RosLaunch", "StartPlan", "StartStep"]
 __all__ += ["describe_dropped", "describe_lifecycle", "describe_ready", "describe_unknown", "find_looking_variables"]
-__all__ += ["find_network_variables", "find_wanted_steps", "format_seconds", "has_substitution", "make_start_plan", "name_waits"]
+__all__ += [
+    "find_network_variables",
+    "find_wanted_steps",
+    "format_seconds",
+    "has_substitution",
+    "make_start_plan",
+    "name_waits",
+]
 __all__ += ["record_dds_profile"]

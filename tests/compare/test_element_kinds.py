@@ -280,7 +280,7 @@ nodes:
   r: [whole, copy]
   s: {timing: {rate: 1 Hz}}
   t: [d, e]
-hosts: {pc: {title: P, cores: 4, address: 10.0.0.2, environment: {A: "1"}, scheduling: edf, description: D, tags: [t], properties: {q: 1}, hints: {x: {a: 1}}}, arm: {scheduling: {0: fifo}}}
+hosts: {pc: {title: P, cores: 4, address: 10.0.0.2, discovery_server: 11811, environment: {A: "1"}, scheduling: edf, description: D, tags: [t], properties: {q: 1}, hints: {x: {a: 1}}}, arm: {scheduling: {0: fifo}}}
 containers: {bare: pc, box: {title: B, host: pc, threads: 2, scheduling: fifo, namespace: /s, name: boxes, package: p, executable: e, parameters: {rate: 5}, properties: {q: 1}, hints: {x: {a: 1}}}}
 resources: {gpu: {title: G, host: pc, scheduling: fifo, properties: {q: 1}, hints: {x: {a: 1}}}}
 links: {lan: {title: L, connects: [pc, arm, b], owner: certh, protocol: can, bandwidth: 1 Gbit/s, latency: {best: 1 ms, worst: 2 ms}, properties: {q: 1}, hints: {x: {a: 1}}}}

@@ -90,7 +90,7 @@ def test_keys_that_look_like_numbers() -> None:
         "1:14 unknown-key: a host has no key `cors` | did you mean `cores`?",
         f"1:24 wrong-value: `+1` cannot be an id | {ID}",
         "1:36 wrong-type: `cores` is `x`, but must be a whole number | write a number without unit",
-        "1:40 wrong-type: `7` is a list, but must be text or a mapping | its keys are `title`, `cores`, `scheduling`, `description`, `address`, `environment`, `tags`, `properties`, `hints`",
+        "1:40 wrong-type: `7` is a list, but must be text or a mapping | its keys are `title`, `cores`, `scheduling`, `description`, `address`, `discovery_server`, `environment`, `tags`, `properties`, `hints`",
         f"1:40 wrong-value: `7` cannot be an id | {ID}",
         "2:24 wrong-value: `1` cannot be `f:x` | an address begins with `https://`, `http://` or `mailto:`, and holds no blank, `<`, `>` or `\"` (write `%3C`, `%3E`, `%22`); a file of the repository is its path from the project's folder, with `/` and without blanks",
         "2:32 unknown-key: a functional group has no key `0` | its keys are `title`, `description`, `owner`, `tags`, `urls`, `layout`, `components`, `autoconnect`, `properties`, `hints`",

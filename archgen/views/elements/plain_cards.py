@@ -27,6 +27,7 @@ from archgen.views.sequences.sequence_charts import describe_total, list_step_li
 
 _CARD_KEYS = (
     *("message", "size", "comment", "description", "use_cases", "host", "cores", "address", "threads", "scheduling"),
+    "discovery_server",
     *("connects", "devices", "owner", "protocol", "bandwidth", "frame", "parent", "by", "rate", "deadline", "show"),
     *("of", "without", "drop"),
 )

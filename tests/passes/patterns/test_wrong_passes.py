@@ -264,8 +264,8 @@ def test_a_pass_that_cannot_be_called_so_hides_none_that_ships(tmp_path: Path) -
         (tmp_path / "passes" / f"{name}.yaml").write_text(text)
     checked = check_project(tmp_path)
     assert [(each.span.file, each.message) for each in checked.findings] == [
-        ("passes/Mine.yaml", "`Mine` is no name for a pass"),
         ("passes/envelope.yaml", "there is a pass `envelope` already"),
+        ("passes/Mine.yaml", "`Mine` is no name for a pass"),
         ("passes/rules.envelope.yaml", "`rules.envelope` is no name for a pass"),
     ]
     known = find_known_passes(checked.loaded_project)
