@@ -107,4 +107,4 @@ def test_killed_in_the_middle_it_stops_what_was_started(script: Path, ports: lis
         f"stop {name}" for name in reversed(SERVICES)
     ]
     assert 'not up    event_cache: its output does not hold "IceStorm ready"' in run.output
-    assert "not up    dgclocalnav: not started, it waits for laser2d0 faithlocaliser3d" in run.output
+    assert "not up    dgclocalnav: not started, it waits for faithlocaliser3d laser2d0" in run.output
