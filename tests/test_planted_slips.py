@@ -15,7 +15,7 @@ _QUICK_SHARE = 8
 """The fast tests try one slip of so many."""
 
 
-def list_bad(slips: tuple[Slip, ...]) -> tuple[list[tuple[str, ...]], Counter[str]]:
+def list_bad(slips: tuple[Slip, ...]) -> tuple[list[tuple[str, str, str, str]], Counter[str]]:
     """Follow the help of slips; return where one misleads or fails, and how often each verdict came."""
     seed = judge_text(SEED)
     outcomes = [follow_help(slip, seed) for slip in slips]

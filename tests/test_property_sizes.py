@@ -70,9 +70,10 @@ def _sort_by_mark(samples: Iterable[object]) -> dict[str, list[object]]:
     """Return the samples that `make test` tries, those that `make test-all` does (`slow`), and those of `make properties`."""
     sorted_samples = dict[str, list[object]]()
     for sample in samples:
-        is_marked = isinstance(sample, pytest.ParameterSet)
-        marks = [mark.name for mark in sample.marks] if is_marked else ["quick"]
-        sorted_samples.setdefault(" ".join(marks), []).append(sample.values if is_marked else sample)
+        marks, value = ["quick"], sample
+        if isinstance(sample, pytest.ParameterSet):
+            marks, value = [mark.name for mark in sample.marks], sample.values
+        sorted_samples.setdefault(" ".join(marks), []).append(value)
     return sorted_samples
 
 
