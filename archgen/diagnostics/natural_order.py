@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from functools import lru_cache
 
 _NUMBER = re.compile(r"([0-9]{1,18})")
 """Longer rows of digits are no numbers that anybody counts by."""
@@ -11,6 +12,7 @@ _NUMBER = re.compile(r"([0-9]{1,18})")
 NaturalOrder = tuple[tuple[tuple[int, int, str], ...], str]
 
 
+@lru_cache(4096)
 def order_naturally(name: str) -> NaturalOrder:
     """Return what a name sorts by: its numbers by their value, its letters whatever their case, at last as it is written."""
     parts = _NUMBER.split(name.casefold())
