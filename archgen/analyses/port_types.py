@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections import defaultdict
 from collections.abc import Iterator, Mapping
 
-from archgen.derivation.wire.running_state import FAST_DDS
+from archgen.derivation.wire.running_state import FAST_DDS, list_discovery_servers
 from archgen.diagnostics import NO_SPAN, Diagnostic, Label, Severity, Span, did_you_mean
 from archgen.grouping import group_pairs
 from archgen.model.architecture import Architecture
@@ -220,7 +220,10 @@ def _find_places(architecture: Architecture) -> Mapping[str, Mapping[Span, str]]
 
 def unused_ros_setting(architecture: Architecture) -> Iterator[Diagnostic]:
     """Something is written that only ROS has, at a port or a program that is no ROS; or that its distribution has not."""
-    for message, place, help_line, element in _list_discovery_settings(architecture):
+    for message, place, help_line, element in (
+        *_list_discovery_settings(architecture),
+        *_list_unserved_hosts(architecture),
+    ):
         yield Diagnostic("unused-ros-setting", message, place, help=help_line, element=element)
     for node in architecture.nodes.values():
         for key, place, reason in (*_list_port_settings(architecture, node), *_list_program_settings(node)):
@@ -271,6 +274,16 @@ def _list_discovery_settings(architecture: Architecture) -> Iterator[tuple[str, 
             words = f"`discovery: {way}` finds nothing at `{host.network_name}`: Fast DDS takes no {'peer' if way == 'peers' else 'server'} by a number of IPv6, and nodes that are told of one do not start"
             help_line = "write its IPv4 number, or a name that has one, as `address`; or another DDS (`RMW_IMPLEMENTATION` in `environment` of `ros`)"
             yield words, host.at, help_line, host.id
+
+
+def _list_unserved_hosts(architecture: Architecture) -> Iterator[tuple[str, Span, str, str | None]]:
+    """Yield the same of hosts with a middleware of their own that asks no discovery server."""
+    for host in architecture.hosts.values() if list_discovery_servers(architecture) else ():
+        middleware = host.environment.get("RMW_IMPLEMENTATION", FAST_DDS)
+        if not middleware.startswith(FAST_DDS):
+            words = f"`discovery: server` finds nothing on `{host.id}`: `{middleware}` has no discovery server"
+            place = host.environment_places.get("RMW_IMPLEMENTATION", host.at)
+            yield words, place, "leave its middleware out, or write `discovery: peers`", host.id
 
 
 def _list_port_settings(architecture: Architecture, node: Node) -> Iterator[tuple[str, Span, str]]:
