@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 from collections.abc import Iterable, Iterator, Mapping
 
+from archgen.diagnostics import make_visible
 from archgen.emit import file_tree
 from archgen.frozen import dataclass, replace
 from archgen.git import GitError, GitRepository, find_repository, resolve_revision
@@ -75,7 +76,7 @@ def prepare_signature(
     if strangers := [each for each in signers if each not in agreement.pair]:
         msg = f"`{strangers[0]}` is none of the two partners `{agreement.pair[0]}` and `{agreement.pair[1]}`"
         raise SigningError(msg)
-    if unclear := [who for who in signers.values() if not who.strip() or not who.isprintable()]:
+    if unclear := [who for who in signers.values() if not who.strip() or who != make_visible(who)]:
         msg = f'{unclear[0]!r} is no name that can stand in a line: write who signs, such as "M. Rossi"'
         raise SigningError(msg)
     repository = find_repository(checked_project.root)
