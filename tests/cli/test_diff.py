@@ -127,6 +127,7 @@ def test_json_follows_its_schema(run: Run, robot: Path) -> None:
         "sensing",
         ["sssa"],  # the topic is called after the group, and its reader is taken away
     )
+    assert [each["verdicts"] for each in data["chains"]] == [["met", "met"]]
     assert [(c["id"], c["before"]["value"], c["after"]["value"], c["deadline"]) for c in data["chains"]] == [
         ("see", 107.0, 102.0, 300.0)
     ]

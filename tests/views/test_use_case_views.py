@@ -97,6 +97,36 @@ def test_the_card_tells_how_long_they_take(tmp_path: Path) -> None:
     assert facts["time"] == sequence_charts.describe_total(timed, "UC-4")
 
 
+BESIDE_ANOTHER = """\
+archgen: 1
+use_cases: {UC-1: {title: Passing on, steps: [{from: a, to: b}OTHERS]}}
+groups:
+  g:
+    components:
+      a: {outputs: {x: X}, timing: {rate: 1 Hz, wcet: 1 ms}}
+      b: {inputs: {x: a.x}, outputs: {y: X}, timing: {behaviour: event, wcet: 2 ms}}
+      c: {inputs: {y: b.y}, timing: {behaviour: event, wcet: 3 ms}}
+      busy: {outputs: {z: {type: X, external: A lamp}}, timing: {rate: 2 Hz, wcet: 40 ms}}
+types: {X: std_msgs/msg/Empty}
+nodes: {a: {implements: a, host: pc}, b: {implements: b, host: pc}, c: {implements: c, host: pc}, busy: {implements: busy, host: pc}}
+hosts: {pc: {cores: 1}}
+"""
+
+
+@pytest.mark.parametrize(("others", "is_less"), [(", {from: b, to: c}", True), ("", False)])
+def test_a_whole_that_is_less_than_its_steps_says_why(tmp_path: Path, *, others: str, is_less: bool) -> None:
+    (tmp_path / "robot.yaml").write_text(BESIDE_ANOTHER.replace("OTHERS", others), encoding="utf-8")
+    architecture = pipeline.check_project(tmp_path / "robot.yaml").architecture
+    from archgen.views.lookup import make_lookup
+
+    timed = make_lookup(architecture, timing_lookup=analyse_with_chains(architecture))
+    total = sequence_charts.describe_total(timed, "UC-1")
+    assert total.startswith("at most ")
+    reason = "; the steps add up to more, but what several of them wait for counts once"
+    assert sequence_charts.explain_total(timed, "UC-1") == total + (reason if is_less else "")
+    assert dict(make_card(timed, "use case", "UC-1").facts)["time"] == sequence_charts.explain_total(timed, "UC-1")
+
+
 def test_lists(lookup: Lookup) -> None:
     header, rows = list_element_rows(lookup, "use_cases")
     assert [dict(zip(header, row, strict=True))["steps"] for row in rows] == ["0", "6"]

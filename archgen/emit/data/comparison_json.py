@@ -133,6 +133,7 @@ def _chain_record(chain_change: ChainChange) -> dict[str, Any]:
         "before": _bound_record(chain_change.before),
         "after": _bound_record(chain_change.after),
         "deadline": deadline,
+        "verdicts": [each and each.verdict for each in (chain_change.before, chain_change.after)],
     }
 
 

@@ -23,7 +23,7 @@ from archgen.views.elements.frame_users import list_frame_users
 from archgen.views.elements.type_fields import list_field_lines
 from archgen.views.lookup import Lookup
 from archgen.views.requirement_servers import describe_chain_state
-from archgen.views.sequences.sequence_charts import describe_total, list_step_lines
+from archgen.views.sequences.sequence_charts import explain_total, list_step_lines
 
 _CARD_KEYS = (
     *("message", "size", "comment", "description", "use_cases", "host", "cores", "address", "threads", "scheduling"),
@@ -39,7 +39,7 @@ def make_use_case_card(lookup: Lookup, use_case: UseCase) -> ElementCard:
     facts = [
         ("description", " ".join((use_case.description or "").split())),
         ("actors", ", ".join(f"{actor.id} ({actor.title})" for actor in use_case.actors.values())),
-        ("time", describe_total(lookup, use_case.id)),
+        ("time", explain_total(lookup, use_case.id)),
     ]
     requirement_ids = tuple(r.id for r in lookup.architecture.requirements.values() if use_case.id in r.use_cases)
     lists = (

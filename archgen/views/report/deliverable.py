@@ -267,7 +267,7 @@ class DeliverablePrinter:
     def _tell_use_case(self, use_case_id: str) -> Iterator[Block]:
         use_case = self.architecture.use_cases[use_case_id]
         text = " ".join((use_case.description or "").split())
-        total = sequence_charts.describe_total(self.lookup, use_case_id)
+        total = sequence_charts.explain_total(self.lookup, use_case_id)
         runs = [Text(f"{text} ")] if text else []
         runs += [Text(f"{total[:1].upper()}{total[1:]}.", strong=True)] if total else []
         if runs:

@@ -50,9 +50,8 @@ def make_sequence_blocks(lookup: Lookup, use_case: UseCase) -> Iterator[Block]:
     broken = [each.number for each in steps if each.is_broken]
     if broken:
         numbers = inline_text.join_inlines(inline_text.to_inlines(str(number)) for number in broken)
-        lead = "Step " if len(broken) == 1 else "Steps "
-        rest = " runs along no connection." if len(broken) == 1 else " run along no connection."
-        yield Paragraph((Text(lead), *numbers, Text(rest)), "warning")
+        lead, rest = ("Step ", " runs") if len(broken) == 1 else ("Steps ", " run")
+        yield Paragraph((Text(lead), *numbers, Text(f"{rest} along no connection.")), "warning")
     chart_id = f"{CHART_PREFIX}{use_case.id}"
     alt = f"The steps of {use_case.title} between those who take part; the table has them in words."
     narrow = f"{chart_id}{UPRIGHT}" if has_lanes(steps) else None
@@ -63,7 +62,7 @@ def make_sequence_blocks(lookup: Lookup, use_case: UseCase) -> Iterator[Block]:
 def _list_facts(lookup: Lookup, use_case: UseCase) -> Iterator[tuple[str, Inlines]]:
     if use_case.actors:
         yield "From outside", inline_text.to_inlines(", ".join(actor.title for actor in use_case.actors.values()))
-    total = sequence_charts.describe_total(lookup, use_case.id)
+    total = sequence_charts.explain_total(lookup, use_case.id)
     if total:
         yield "All steps", inline_text.to_inlines(total)
 
@@ -158,11 +157,9 @@ def _link_carriers(lookup: Lookup, connected: ConnectedStep) -> Inlines:
 def _make_time_cell(lookup: Lookup, use_case: UseCase, number: int) -> Inlines:
     times = sequence_charts.find_times(lookup, use_case.id)
     value = times.steps[number - 1] if times else None
-    if value is None:
-        return ()
-    if value.value is None:
+    if value is not None and value.value is None:
         return (Text(sequence_charts.NOT_PROVEN, muted=True),)
-    return timing_tables.duration_cell(value)
+    return timing_tables.duration_cell(value) if value is not None else ()
 
 
 def link_use_cases(lookup: Lookup, component_id: str) -> Inlines:

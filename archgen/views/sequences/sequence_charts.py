@@ -236,8 +236,17 @@ def describe_total(lookup: Lookup, use_case_id: str) -> str:
     text = value_format.display_duration(times.total)
     if times.total.value is None:
         return NOT_PROVEN
-    is_bound = times.total.complete
-    return f"at most {text}" if is_bound else f"{NOT_PROVEN} ({text})"
+    return f"at most {text}" if times.total.complete else f"{NOT_PROVEN} ({text})"
+
+
+def explain_total(lookup: Lookup, use_case_id: str) -> str:
+    """Return how long all steps take together and, where that is less than their sum, why."""
+    times, total = find_times(lookup, use_case_id), describe_total(lookup, use_case_id)
+    if times is None or not times.total.complete or times.total.value is None:
+        return total
+    known = [each.value for each in times.steps if each and each.value]
+    is_less = len(known) > 1 and times.total.value < sum(known)
+    return f"{total}; the steps add up to more, but what several of them wait for counts once" if is_less else total
 
 
 def list_step_lines(lookup: Lookup, use_case: UseCase) -> Iterator[str]:

@@ -10,6 +10,7 @@ from fractions import Fraction
 
 from archgen.diagnostics import join_words, order_naturally
 from archgen.frozen import NamedTuple
+from archgen.model.element_ids import make_id, make_unique_id
 from archgen.model.node import Node
 from archgen.timing.analysis import ChainResult
 from archgen.timing.chains.chain_advice import sum_known_parts
@@ -242,8 +243,10 @@ def make_unjudged_blocks(lookup: Lookup, activities: Sequence[Activity]) -> Iter
     yield Bullets(tuple(_link_line(lookup, text) for _, text in found))
     ways_by_name: dict[str, UnjudgedWay] = {}
     for way in (way for way, _ in found if way.duration is not None):
-        name = f"{way.through[0]}_to_{way.through[-1]}".replace(".", "_")
-        ways_by_name[f"{name}_by_{_port_name(way.flow.arc.input)}" if name in ways_by_name else name] = way
+        name = make_id(f"{way.through[0]}_to_{way.through[-1]}", "chain")
+        if name in ways_by_name:
+            name = make_id(f"{name}_by_{_port_name(way.flow.arc.input)}", "chain")
+        ways_by_name[make_unique_id(name, ways_by_name)] = way
     lines = [line for name, way in ways_by_name.items() for line in _write_chain(lookup, name, way)]
     if not lines:
         return

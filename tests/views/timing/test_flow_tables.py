@@ -2,16 +2,20 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 
+import pytest
 import yaml
 
 from archgen import pipeline
+from archgen.model.element_ids import is_id
 from archgen.views.elements.element_card import make_card
 from archgen.views.lookup import Lookup, make_lookup
 from archgen.views.pages.report_outline import DocumentEdition
 from archgen.views.pages.site_pages import make_pages
 from archgen.views.shapes import Bullets, Inlines, Markdown, Section, Table
+from archgen.views.timing import flow_tables
 from archgen.views.timing.flow_tables import list_activities, list_flow_rows, make_flow_sections, make_unjudged_blocks
 from archgen.views.timing.timing_lookup import analyse_with_chains
 
@@ -107,6 +111,21 @@ def test_the_lines_make_a_chain_that_says_what_the_page_says(tmp_path: Path) -> 
         told
         == f"pose: {(result.bound.value or 0) / 10**6} ms at most from what odometry senses until stop has acted on it."
     )
+
+
+def test_the_lines_that_make_chains_have_ids_that_archgen_takes(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    lookup = _look_up(tmp_path)
+    activities = list_activities(lookup, (lookup.architecture.nodes["stop"],))
+    ((way, _),) = flow_tables.list_unjudged_lines(lookup, activities)
+    # What two nodes of one component send each other has a topic, and no port that names it.
+    internal = replace(way, flow=replace(way.flow, arc=replace(way.flow.arc, input="/Chosen/it")))
+    monkeypatch.setattr(flow_tables, "list_unjudged_lines", lambda *_: [(way, "a"), (internal, "b"), (internal, "c")])
+    text = next(block.text for block in make_unjudged_blocks(lookup, activities) if isinstance(block, Markdown))
+    names = list(yaml.safe_load(text.removeprefix("```yaml\n").removesuffix("\n```"))["chains"])
+    assert names == ["odometry_to_stop", *(f"odometry_to_stop_by_chosen_it{number}" for number in ("", "_2"))]
+    assert all(is_id(name) for name in names)
 
 
 def test_site_pages_and_cards_have_the_same_rows(tmp_path: Path) -> None:
