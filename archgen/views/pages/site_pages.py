@@ -176,9 +176,9 @@ class PageMaker:
         """Return a page's lead with the titles of the owners behind it."""
         return " · ".join([lead, *(self.architecture.partners[owner].title for owner in owners)])
 
-    def _finding_sections(self, element_id: str) -> list[Section]:
-        """Return a section with the findings about an element, or nothing."""
-        findings = self.lookup.findings_of.get(element_id, ())
+    def _finding_sections(self, element_id: str, *served_ids: str) -> list[Section]:
+        """Return a section with the findings about an element, and about what it serves, or nothing."""
+        findings = [each for name in (element_id, *served_ids) for each in self.lookup.findings_of.get(name, ())]
         table = finding_tables.make_finding_table(self.lookup, findings, f"table:findings/{element_id}")
         return [Section(f"findings:{element_id}", "Open points", (table,))] if table else []
 
@@ -190,7 +190,7 @@ class PageMaker:
     def make_node_page(self, node: Node) -> Page:
         """Make the page of a node."""
         flows = make_flow_sections(self.lookup, node.id, node.id, list_activities(self.lookup, (node,)))
-        sections = (*flows, *self._finding_sections(node.id))
+        sections = (*flows, *self._finding_sections(node.id, *node.implements))
         section = Section(f"node:{node.id}", node.id, make_node_blocks(self.lookup, node), sections)
         kinds = ", ".join(inline_text.NODE_KIND_WORDS[kind] for kind in node.kinds)
         lead = self._lead_with_owners(

@@ -241,13 +241,15 @@ def make_unjudged_blocks(lookup: Lookup, activities: Sequence[Activity]) -> Iter
     lead = "On these inputs no deadline rests. What a chain from the farthest sensor would say:"
     yield Paragraph(inline_text.to_inlines(lead))
     yield Bullets(tuple(_link_line(lookup, text) for _, text in found))
-    ways_by_name: dict[str, UnjudgedWay] = {}
+    all_activities = lookup.timing.analysis.system.activities if lookup.timing else {}
+    names_by_way: dict[tuple[str, ...], str] = {}
     for way in (way for way, _ in found if way.duration is not None):
-        name = make_id(f"{way.through[0]}_to_{way.through[-1]}", "chain")
-        if name in ways_by_name:
+        nodes = tuple(all_activities[each].node for each in way.through)
+        name, taken_names = make_id(f"{way.through[0]}_to_{way.through[-1]}", "chain"), {*names_by_way.values()}
+        if name in taken_names:
             name = make_id(f"{name}_by_{_port_name(way.flow.arc.input)}", "chain")
-        ways_by_name[make_unique_id(name, ways_by_name)] = way
-    lines = [line for name, way in ways_by_name.items() for line in _write_chain(lookup, name, way)]
+        names_by_way.setdefault(nodes, make_unique_id(name, taken_names))
+    lines = [f"  {name}:\n    through: [{', '.join(nodes)}]" for nodes, name in names_by_way.items()]
     if not lines:
         return
     yield Paragraph(
@@ -263,12 +265,6 @@ def _link_line(lookup: Lookup, text: str) -> Inlines:
         *inline_text.message_to_inlines(f"{port}{colon}"),
         *element_references.link_names(lookup.architecture, f"{rest}."),
     )
-
-
-def _write_chain(lookup: Lookup, name: str, way: UnjudgedWay) -> Iterator[str]:
-    activities = lookup.timing.analysis.system.activities if lookup.timing else {}
-    yield f"  {name}:"
-    yield f"    through: [{', '.join(activities[each].node for each in way.through)}]"
 
 
 def _port_name(key: str) -> str:

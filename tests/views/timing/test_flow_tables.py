@@ -120,11 +120,19 @@ def test_the_lines_that_make_chains_have_ids_that_archgen_takes(
     activities = list_activities(lookup, (lookup.architecture.nodes["stop"],))
     ((way, _),) = flow_tables.list_unjudged_lines(lookup, activities)
     # What two nodes of one component send each other has a topic, and no port that names it.
-    internal = replace(way, flow=replace(way.flow, arc=replace(way.flow.arc, input="/Chosen/it")))
-    monkeypatch.setattr(flow_tables, "list_unjudged_lines", lambda *_: [(way, "a"), (internal, "b"), (internal, "c")])
+    arc = replace(way.flow.arc, input="/Chosen/it")
+    first, *_, last = way.through
+    others = [
+        replace(way, flow=replace(way.flow, arc=arc), through=(first,) * length + (last,)) for length in (1, 2, 3)
+    ]
+    found = [(way, "a"), *((each, "b") for each in others)]
+    monkeypatch.setattr(flow_tables, "list_unjudged_lines", lambda *_: found)
     text = next(block.text for block in make_unjudged_blocks(lookup, activities) if isinstance(block, Markdown))
-    names = list(yaml.safe_load(text.removeprefix("```yaml\n").removesuffix("\n```"))["chains"])
+    chains = yaml.safe_load(text.removeprefix("```yaml\n").removesuffix("\n```"))["chains"]
+    names = list(chains)
+    # The same way by another input is said once.
     assert names == ["odometry_to_stop", *(f"odometry_to_stop_by_chosen_it{number}" for number in ("", "_2"))]
+    assert len({tuple(chain["through"]) for chain in chains.values()}) == 3
     assert all(is_id(name) for name in names)
 
 
