@@ -51,6 +51,13 @@ _STALE_WORDS = {
     multiple=True,
     help="Take a file over as it stands, changed or not: archgen never touches it again.",
 )
+@click.option(
+    "--was",
+    "former_id",
+    metavar="ID",
+    default="",
+    help="The id that the project had before: what was made for that is its own.",
+)
 @click.option("--dry-run", is_flag=True, help="Say what would be done with each file, and do nothing.")
 @click.option(
     "--check", "only_check", is_flag=True, help="Say which files are not as the model says, do nothing, and end with 1."
@@ -73,6 +80,7 @@ def command(  # noqa: C901, PLR0913 - one for each option
     settings: tuple[str, ...],
     overwrite: tuple[str, ...],
     keep: tuple[str, ...],
+    former_id: str,
     dry_run: bool,
     only_check: bool,
     patch: bool,
@@ -124,6 +132,7 @@ def command(  # noqa: C901, PLR0913 - one for each option
             keep,
             dry_run or only_check or patch,
             usual_options=listed.backends.get(backend, {}),
+            former_project=former_id,
         )
         with command_support.explain_write_errors():
             result = write_workspace(checked_project, output_options, backend, output, request)

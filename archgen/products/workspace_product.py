@@ -13,8 +13,9 @@ from archgen.emit.file_tree import OutputError, refuse_file
 from archgen.emit.workspace import workspace_writing
 from archgen.emit.workspace.disk_files import DiskReader, GeneratedFile, fold_file_path
 from archgen.emit.workspace.known_fits import KnownFits
-from archgen.emit.workspace.run_record import read_other_records, read_run_record
+from archgen.emit.workspace.run_record import find_former_project, read_other_records, read_run_record, take_over_runs
 from archgen.emit.workspace.workspace_plan import STALE, FileStep, UserChoices, WorkspacePlan, plan_workspace
+from archgen.model.architecture import ProjectInfo
 from archgen.pipeline import CheckedProject
 from archgen.products.backend_choice import choose_backends, raise_problems
 from archgen.products.backend_products import make_generation_context
@@ -41,6 +42,8 @@ class WorkspaceRequest:
     """Whether files go that are no longer made."""
     usual_options: Mapping[str, str] = field(default_factory=dict)
     """What the project says of options that are not asked for otherwise."""
+    former_project: str = ""
+    """The id that the project had before, or its own one where what another project has here is none of its."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -89,6 +92,12 @@ def write_workspace(
         return WorkspaceResult(folder, None, findings)
     if clashes := tuple(_find_clashes(files, backend, folder)):
         return WorkspaceResult(folder, None, (*findings, *clashes))
+    project = checked_project.architecture.project
+    former = find_former_project(
+        read_run_record(folder, backend.id), project.id, frozenset(file.path for file in files)
+    )
+    if former and request.former_project not in {former, project.id}:
+        return WorkspaceResult(folder, None, (*findings, _ask_for_former_id(project, former, folder)))
     run = _name_run(checked_project, options, request.host)
     request = replace(request, removes_unmade=request.removes_unmade and not checked_project.has_errors)
     return WorkspaceResult(folder, _write_files(files, backend, folder, run, request), findings)
@@ -209,6 +218,15 @@ def _find_clashes(files: Sequence[GeneratedFile], backend: Backend, folder: Path
             return
 
 
+def _ask_for_former_id(project: ProjectInfo, former: str, folder: Path) -> Diagnostic:
+    return tell_left_out(
+        f"{folder} has code of somebody's own that was made for the project `{former}`: `{project.id}` would begin it anew beside it",
+        project.at,
+        help_line=f"is it this project under its former id, `--was {former}` takes it over and says what of the code moves where; "
+        f"are they two projects, `--was {project.id}` leaves all of `{former}` as it is",
+    )
+
+
 def _write_files(
     files: Sequence[GeneratedFile], backend: Backend, folder: Path, run: str, request: WorkspaceRequest
 ) -> WorkspacePlan:
@@ -230,6 +248,8 @@ def _plan_files(
     files: Sequence[GeneratedFile], backend: Backend, folder: Path, run: str, request: WorkspaceRequest
 ) -> WorkspacePlan:
     record = read_run_record(folder, backend.id)
+    if request.former_project:
+        record = take_over_runs(record, request.former_project, run.partition(" ")[0])
     known_paths = {*record.files, *(file.path for file in files)}
     fits = KnownFits(cache_folder(), folder, backend.id)
     choices = UserChoices(

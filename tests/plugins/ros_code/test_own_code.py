@@ -537,3 +537,38 @@ def test_other_files_of_the_package_are_told_of_what_the_node_had(farm: Path, ba
         )
     helper.write_text("def pull(node):\n    node.publish_halt(True)\n", encoding="utf-8")
     assert generate(farm, backend, change(ROBOT, *CHANGES["an output is renamed"][0]), 0) == []
+
+
+def _read_all(folder: Path) -> dict[Path, bytes]:
+    return {path: path.read_bytes() for path in sorted(folder.rglob("*")) if path.is_file()}
+
+
+def test_own_code_follows_a_project_that_gets_another_id(tmp_path: Path) -> None:
+    generate(tmp_path, "ros2_python", ROBOT, 0)
+    guard = find_own(tmp_path, "base/guard", "ros2_python")
+    guard.write_text(GUARD, encoding="utf-8")
+    renamed = ROBOT.replace("id: farm", "id: ranch")
+    (tmp_path / "archgen.yaml").write_text(renamed, encoding="utf-8")
+    before = _read_all(tmp_path)
+    for more in ([], ["--check"], ["--was", "frm"]):
+        said = archgen_here("generate", "ros2_python", "-o", "ws", *more, cwd=tmp_path, status=1).stderr.decode()
+        assert "archgen.yaml:2:" in said
+        assert "that was made for the project `farm`: `ranch` would begin it anew beside it" in said
+        assert before == _read_all(tmp_path)
+    lines = generate(tmp_path, "ros2_python", renamed, 1, "--was", "farm")
+    assert any("it may become ranch_base/ranch_base/guard.py, which is empty" in line for line in lines), lines
+    assert [each.name for each in sorted((tmp_path / "ws" / "src").glob("farm_*"))] == ["farm_base"]
+    guard.rename(tmp_path / "ws" / "src" / "ranch_base" / "ranch_base" / "guard.py")
+    assert generate(tmp_path, "ros2_python", renamed, 0) == []
+    assert not list((tmp_path / "ws" / "src" / "farm_base").rglob("*.py"))
+
+
+def test_two_projects_of_one_shape_share_a_workspace(tmp_path: Path) -> None:
+    generate(tmp_path, "ros2_python", ROBOT, 0)
+    guard = find_own(tmp_path, "base/guard", "ros2_python")
+    guard.write_text(GUARD, encoding="utf-8")
+    other = ROBOT.replace("id: farm", "id: ranch")
+    generate(tmp_path, "ros2_python", other, 0, "--was", "ranch")
+    for robot in (other, ROBOT):
+        assert generate(tmp_path, "ros2_python", robot, 0) == []
+    assert guard.read_text("utf-8") == GUARD
