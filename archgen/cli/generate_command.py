@@ -96,7 +96,7 @@ def command(  # noqa: C901, PLR0913 - one for each option
     the project lists in `generate`. Files of others are never touched, and neither are those that somebody changed since
     archgen wrote them.
     """
-    from archgen.products.workspace_product import WorkspaceRequest, write_workspace
+    from archgen.products.workspace_product import WorkspaceRequest, write_workspaces
 
     if name is None and (overwrite or keep or settings):
         msg = "`--overwrite`, `--keep` and `--option` want the backend that they are for"
@@ -124,18 +124,25 @@ def command(  # noqa: C901, PLR0913 - one for each option
     )
     options = _read_settings(settings)
     is_complete = True
-    for backend in listed.backends if name is None else [name]:
-        request = WorkspaceRequest(
+    only_look = dry_run or only_check or patch
+    requests = {
+        backend: WorkspaceRequest(
             host,
             options,
             overwrite,
             keep,
-            dry_run or only_check or patch,
+            only_look,
             usual_options=listed.backends.get(backend, {}),
             former_project=former_id,
         )
+        for backend in (listed.backends if name is None else [name])
+    }
+    results = write_workspaces(checked_project, output_options, requests, output)
+    while True:
         with command_support.explain_write_errors():
-            result = write_workspace(checked_project, output_options, backend, output, request)
+            backend, result = next(results, ("", None))
+        if result is None:
+            break
         if result.findings:
             command_support.print_findings(result.findings, checked_project, sys.stderr)
         if patch:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import contextlib
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 
@@ -42,6 +42,8 @@ class WorkspaceRequest:
     """Whether files go that are no longer made."""
     usual_options: Mapping[str, str] = field(default_factory=dict)
     """What the project says of options that are not asked for otherwise."""
+    leaving: Collection[str] = ()
+    """Files that other backends take away before this one is made."""
     former_project: str = ""
     """The id that the project had before, or its own one where what another project has here is none of its."""
 
@@ -54,6 +56,8 @@ class WorkspaceResult:
     plan: WorkspacePlan | None
     """None where nothing is written, since the findings say that it would be wrong."""
     findings: tuple[Diagnostic, ...] = ()
+    is_in_the_way: bool = False
+    """Whether another backend has files where this one makes some."""
 
     @property
     def stale_steps(self) -> tuple[FileStep, ...]:
@@ -90,8 +94,8 @@ def write_workspace(
     files, findings = _render_files(checked_project, options, backend, request.host)
     if files is None:
         return WorkspaceResult(folder, None, findings)
-    if clashes := tuple(_find_clashes(files, backend, folder)):
-        return WorkspaceResult(folder, None, (*findings, *clashes))
+    if clashes := tuple(_find_clashes(files, backend, folder, request.leaving)):
+        return WorkspaceResult(folder, None, (*findings, *clashes), is_in_the_way=True)
     project = checked_project.architecture.project
     former = find_former_project(
         read_run_record(folder, backend.id), project.id, frozenset(file.path for file in files)
@@ -101,6 +105,26 @@ def write_workspace(
     run = _name_run(checked_project, options, request.host)
     request = replace(request, removes_unmade=request.removes_unmade and not checked_project.has_errors)
     return WorkspaceResult(folder, _write_files(files, backend, folder, run, request), findings)
+
+
+def write_workspaces(
+    checked_project: CheckedProject,
+    options: OutputOptions,
+    requests: Mapping[str, WorkspaceRequest],
+    target: Path | None = None,
+) -> Iterator[tuple[str, WorkspaceResult]]:
+    """Write the workspaces of several backends: one waits for those whose files are in its way, and may leave."""
+    waiting, leaving, has_waited = [*requests], set[str](), set[str]()
+    while waiting:
+        name = waiting.pop(0)
+        request = replace(requests[name], leaving=frozenset(leaving))
+        result = write_workspace(checked_project, options, name, target, request)
+        if result.is_in_the_way and waiting and name not in has_waited:
+            waiting.append(name)
+            has_waited.add(name)
+            continue
+        leaving |= {*result.plan.removals, *result.plan.vanished} if result.plan else set()
+        yield name, result
 
 
 def _run_passes(
@@ -205,11 +229,13 @@ def _name_run(checked_project: CheckedProject, options: OutputOptions, host: str
     return " ".join(words)
 
 
-def _find_clashes(files: Sequence[GeneratedFile], backend: Backend, folder: Path) -> Iterator[Diagnostic]:
+def _find_clashes(
+    files: Sequence[GeneratedFile], backend: Backend, folder: Path, leaving: Collection[str]
+) -> Iterator[Diagnostic]:
     """Yield the first file that another backend makes in a folder, too."""
     other_backends = read_other_records(folder, backend.id)
     for file in files if other_backends else ():
-        if other := other_backends.get(fold_file_path(file.path)):
+        if file.path not in leaving and (other := other_backends.get(fold_file_path(file.path))):
             yield tell_left_out(
                 f"`{file.path}` is made by the backend `{other}` in this folder, and by `{backend.id}`",
                 NO_SPAN,
@@ -258,7 +284,7 @@ def _plan_files(
         request.removes_unmade,
         fits,
     )
-    plan = plan_workspace(record, run, files, DiskReader(folder), choices)
+    plan = plan_workspace(record, run, files, DiskReader(folder, request.leaving), choices)
     fits.keep()
     return plan
 

@@ -160,13 +160,13 @@ def _find_successor(name: str, contract: Contract, recorded: Mapping[str, str], 
 
 
 def _describe_other_use(name: str, contract: Contract, recorded: Mapping[str, str]) -> str:
-    """Return that what a lost name stood for is used otherwise now, such as a service that became an action; empty where it is not."""
+    """Return that what a lost name stood for is an action now, and was a service, or the reverse; empty where it is not."""
     element = _Meaning.read(recorded.get(name, "")).element
     now = [each for each, text in contract.names.items() if element and _Meaning.read(text).element == element]
     if not now or any(_find_kind(each) == _find_kind(name) for each in now):
         return ""
-    became = _BY_KIND.get(_find_kind(now[0]), "is used otherwise")
-    return f"`{element}` {became} now, with `{'`, `'.join(now)}`"
+    became = _BY_KIND.get(_find_kind(now[0]), "") if _find_kind(name) in _BY_KIND else ""
+    return f"`{element}` {became} now, with `{'`, `'.join(now)}`" if became else ""
 
 
 def _describe_successor(
