@@ -51,6 +51,13 @@ _STALE_WORDS = {
     multiple=True,
     help="Take a file over as it stands, changed or not: archgen never touches it again.",
 )
+@click.option(
+    "--was",
+    "former_id",
+    metavar="ID",
+    default="",
+    help="The id that the project had before: what was made for that is its own.",
+)
 @click.option("--dry-run", is_flag=True, help="Say what would be done with each file, and do nothing.")
 @click.option(
     "--check", "only_check", is_flag=True, help="Say which files are not as the model says, do nothing, and end with 1."
@@ -73,6 +80,7 @@ def command(  # noqa: C901, PLR0913 - one for each option
     settings: tuple[str, ...],
     overwrite: tuple[str, ...],
     keep: tuple[str, ...],
+    former_id: str,
     dry_run: bool,
     only_check: bool,
     patch: bool,
@@ -88,7 +96,7 @@ def command(  # noqa: C901, PLR0913 - one for each option
     the project lists in `generate`. Files of others are never touched, and neither are those that somebody changed since
     archgen wrote them.
     """
-    from archgen.products.workspace_product import WorkspaceRequest, write_workspace
+    from archgen.products.workspace_product import WorkspaceRequest, write_workspaces
 
     if name is None and (overwrite or keep or settings):
         msg = "`--overwrite`, `--keep` and `--option` want the backend that they are for"
@@ -116,17 +124,25 @@ def command(  # noqa: C901, PLR0913 - one for each option
     )
     options = _read_settings(settings)
     is_complete = True
-    for backend in listed.backends if name is None else [name]:
-        request = WorkspaceRequest(
+    only_look = dry_run or only_check or patch
+    requests = {
+        backend: WorkspaceRequest(
             host,
             options,
             overwrite,
             keep,
-            dry_run or only_check or patch,
+            only_look,
             usual_options=listed.backends.get(backend, {}),
+            former_project=former_id,
         )
+        for backend in (listed.backends if name is None else [name])
+    }
+    results = write_workspaces(checked_project, output_options, requests, output)
+    while True:
         with command_support.explain_write_errors():
-            result = write_workspace(checked_project, output_options, backend, output, request)
+            backend, result = next(results, ("", None))
+        if result is None:
+            break
         if result.findings:
             command_support.print_findings(result.findings, checked_project, sys.stderr)
         if patch:

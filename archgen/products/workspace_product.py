@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import contextlib
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 
@@ -13,8 +13,9 @@ from archgen.emit.file_tree import OutputError, refuse_file
 from archgen.emit.workspace import workspace_writing
 from archgen.emit.workspace.disk_files import DiskReader, GeneratedFile, fold_file_path
 from archgen.emit.workspace.known_fits import KnownFits
-from archgen.emit.workspace.run_record import read_other_records, read_run_record
+from archgen.emit.workspace.run_record import find_former_project, read_other_records, read_run_record, take_over_runs
 from archgen.emit.workspace.workspace_plan import STALE, FileStep, UserChoices, WorkspacePlan, plan_workspace
+from archgen.model.architecture import ProjectInfo
 from archgen.pipeline import CheckedProject
 from archgen.products.backend_choice import choose_backends, raise_problems
 from archgen.products.backend_products import make_generation_context
@@ -41,6 +42,10 @@ class WorkspaceRequest:
     """Whether files go that are no longer made."""
     usual_options: Mapping[str, str] = field(default_factory=dict)
     """What the project says of options that are not asked for otherwise."""
+    leaving: Collection[str] = ()
+    """Files that other backends take away before this one is made."""
+    former_project: str = ""
+    """The id that the project had before, or its own one where what another project has here is none of its."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -51,6 +56,8 @@ class WorkspaceResult:
     plan: WorkspacePlan | None
     """None where nothing is written, since the findings say that it would be wrong."""
     findings: tuple[Diagnostic, ...] = ()
+    is_in_the_way: bool = False
+    """Whether another backend has files where this one makes some."""
 
     @property
     def stale_steps(self) -> tuple[FileStep, ...]:
@@ -87,11 +94,37 @@ def write_workspace(
     files, findings = _render_files(checked_project, options, backend, request.host)
     if files is None:
         return WorkspaceResult(folder, None, findings)
-    if clashes := tuple(_find_clashes(files, backend, folder)):
-        return WorkspaceResult(folder, None, (*findings, *clashes))
+    if clashes := tuple(_find_clashes(files, backend, folder, request.leaving)):
+        return WorkspaceResult(folder, None, (*findings, *clashes), is_in_the_way=True)
+    project = checked_project.architecture.project
+    former = find_former_project(
+        read_run_record(folder, backend.id), project.id, frozenset(file.path for file in files)
+    )
+    if former and request.former_project not in {former, project.id}:
+        return WorkspaceResult(folder, None, (*findings, _ask_for_former_id(project, former, folder)))
     run = _name_run(checked_project, options, request.host)
     request = replace(request, removes_unmade=request.removes_unmade and not checked_project.has_errors)
     return WorkspaceResult(folder, _write_files(files, backend, folder, run, request), findings)
+
+
+def write_workspaces(
+    checked_project: CheckedProject,
+    options: OutputOptions,
+    requests: Mapping[str, WorkspaceRequest],
+    target: Path | None = None,
+) -> Iterator[tuple[str, WorkspaceResult]]:
+    """Write the workspaces of several backends: one waits for those whose files are in its way, and may leave."""
+    waiting, leaving, has_waited = [*requests], set[str](), set[str]()
+    while waiting:
+        name = waiting.pop(0)
+        request = replace(requests[name], leaving=frozenset(leaving))
+        result = write_workspace(checked_project, options, name, target, request)
+        if result.is_in_the_way and waiting and name not in has_waited:
+            waiting.append(name)
+            has_waited.add(name)
+            continue
+        leaving |= {*result.plan.removals, *result.plan.vanished} if result.plan else set()
+        yield name, result
 
 
 def _run_passes(
@@ -196,17 +229,28 @@ def _name_run(checked_project: CheckedProject, options: OutputOptions, host: str
     return " ".join(words)
 
 
-def _find_clashes(files: Sequence[GeneratedFile], backend: Backend, folder: Path) -> Iterator[Diagnostic]:
+def _find_clashes(
+    files: Sequence[GeneratedFile], backend: Backend, folder: Path, leaving: Collection[str]
+) -> Iterator[Diagnostic]:
     """Yield the first file that another backend makes in a folder, too."""
     other_backends = read_other_records(folder, backend.id)
     for file in files if other_backends else ():
-        if other := other_backends.get(fold_file_path(file.path)):
+        if file.path not in leaving and (other := other_backends.get(fold_file_path(file.path))):
             yield tell_left_out(
                 f"`{file.path}` is made by the backend `{other}` in this folder, and by `{backend.id}`",
                 NO_SPAN,
                 help_line=f"give another folder with `-o`, or remove `.archgen/{other}.json` if that one is not used here any more",
             )
             return
+
+
+def _ask_for_former_id(project: ProjectInfo, former: str, folder: Path) -> Diagnostic:
+    return tell_left_out(
+        f"{folder} has code of somebody's own that was made for the project `{former}`: `{project.id}` would begin it anew beside it",
+        project.at,
+        help_line=f"is it this project under its former id, `--was {former}` takes it over and says what of the code moves where; "
+        f"are they two projects, `--was {project.id}` leaves all of `{former}` as it is",
+    )
 
 
 def _write_files(
@@ -230,6 +274,8 @@ def _plan_files(
     files: Sequence[GeneratedFile], backend: Backend, folder: Path, run: str, request: WorkspaceRequest
 ) -> WorkspacePlan:
     record = read_run_record(folder, backend.id)
+    if request.former_project:
+        record = take_over_runs(record, request.former_project, run.partition(" ")[0])
     known_paths = {*record.files, *(file.path for file in files)}
     fits = KnownFits(cache_folder(), folder, backend.id)
     choices = UserChoices(
@@ -238,7 +284,7 @@ def _plan_files(
         request.removes_unmade,
         fits,
     )
-    plan = plan_workspace(record, run, files, DiskReader(folder), choices)
+    plan = plan_workspace(record, run, files, DiskReader(folder, request.leaving), choices)
     fits.keep()
     return plan
 

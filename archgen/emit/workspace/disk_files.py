@@ -121,8 +121,9 @@ class DiskFile:
 class DiskReader:
     """Looks at the paths of one workspace; folders on the way are looked at once."""
 
-    def __init__(self, workspace: Path) -> None:
-        """Start with nothing looked at."""
+    def __init__(self, workspace: Path, leaving: Collection[str] = ()) -> None:
+        """Start with nothing looked at. Files that are `leaving` count as gone."""
+        self._leaving = leaving
         # As text: paths as objects take longer than what is read.
         self._prefix = os.path.join(workspace, "")  # noqa: PTH118
         self._folder_obstacles: dict[str, tuple[str, str]] = {"": ("", "")}
@@ -132,15 +133,16 @@ class DiskReader:
         obstacle, obstacle_path = self._find_folder_obstacle(path.rpartition("/")[0])
         if obstacle:
             return DiskFile(obstacle=obstacle, obstacle_path=obstacle_path)
+        if path in self._leaving:
+            return DiskFile()
         name = self._prefix + path
         try:
             status = os.lstat(name)
         except FileNotFoundError:
             return DiskFile()
-        if stat.S_ISLNK(status.st_mode):
-            return DiskFile(obstacle="is a link", obstacle_path=path)
-        if stat.S_ISDIR(status.st_mode):
-            return DiskFile(obstacle="is a folder", obstacle_path=path)
+        if stat.S_ISLNK(status.st_mode) or stat.S_ISDIR(status.st_mode):
+            obstacle = "is a link" if stat.S_ISLNK(status.st_mode) else "is a folder"
+            return DiskFile(obstacle=obstacle, obstacle_path=path)
         data = b""
         if not stat.S_ISREG(status.st_mode):
             digest = None

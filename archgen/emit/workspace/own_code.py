@@ -14,6 +14,7 @@ from collections.abc import Collection, Iterable, Iterator, Mapping
 from itertools import product
 
 from archgen.diagnostics import find_closest
+from archgen.emit.workspace.cpp_fields import find_field
 from archgen.emit.workspace.python_code import (
     OwnField,
     OwnName,
@@ -26,6 +27,7 @@ from archgen.frozen import dataclass, field
 
 _SENDING = ("publish_", "call_", "send_")
 """How methods of a generated node begin: own code has no other use for such a name of the node."""
+_BY_KIND = {"execute_": "is an action", "send_": "is an action", "serve_": "is a service", "call_": "is a service"}
 _LIFE_CYCLE = frozenset(
     f"on_{each}" for each in ("configure", "activate", "deactivate", "cleanup", "shutdown", "error")
 )
@@ -33,9 +35,6 @@ _COMMENTS = re.compile(r"//[^\n]*|/\*(?:[^*]|\*(?!/))*\*/|\"(?:[^\"\\\n]|\\.)*\"
 _WORD = re.compile(r"\w+")
 _PARAMETER_STRUCT = re.compile(r"\b(\w+)\s*=\s*[\w.>()-]*\bread_parameters\(\)")
 """What holds all parameters at once, in C++."""
-_DOTTED_WORD = re.compile(rb"(?:[A-Za-z0-9_]+\.)*(?P<last>[A-Za-z0-9_]+)")
-_CODE_WORDS = re.compile(rb"//[^\n]*|/\*(?:[^*]|\*(?!/))*\*/|\"(?:[^\"\\\n]|\\.)*\"|[A-Za-z_][A-Za-z0-9_]*")
-"""Comments, texts and words of C++ and its like."""
 _NEW = "+"
 """What the record puts before the meaning of a name that came while own code still used one that was lost."""
 _ROS_PARAMETERS = re.compile(r"use_sim_time\Z|start_type_description_service\Z|qos_overrides\.")
@@ -160,6 +159,26 @@ def _find_successor(name: str, contract: Contract, recorded: Mapping[str, str], 
     return f"{kind}{closest}" if closest else ""
 
 
+def _describe_other_use(name: str, contract: Contract, recorded: Mapping[str, str]) -> str:
+    """Return that what a lost name stood for is an action now, and was a service, or the reverse; empty where it is not."""
+    element = _Meaning.read(recorded.get(name, "")).element
+    now = [each for each, text in contract.names.items() if element and _Meaning.read(text).element == element]
+    if not now or any(_find_kind(each) == _find_kind(name) for each in now):
+        return ""
+    became = _BY_KIND.get(_find_kind(now[0]), "") if _find_kind(name) in _BY_KIND else ""
+    return f"`{element}` {became} now, with `{'`, `'.join(now)}`" if became else ""
+
+
+def _describe_successor(
+    name: str, contract: Contract, recorded: Mapping[str, str], taken: Collection[str]
+) -> tuple[str, str]:
+    """Return what is said of what took the place of a lost name, and the new name; both empty where nothing did."""
+    if other_use := _describe_other_use(name, contract, recorded):
+        return f": {other_use}", ""
+    successor = _find_successor(name, contract, recorded, taken)
+    return (f"; it is most likely `{successor}` now" if successor else ""), successor
+
+
 def _mark_new_names(meanings: Mapping[str, str], contract: Contract, recorded: Mapping[str, str]) -> dict[str, str]:
     """Mark what is new while something lost of its kind waits to be mended: it stays a likely successor until then."""
     waiting = {_find_kind(name) for name in meanings if name not in contract.names}
@@ -226,13 +245,17 @@ class _PythonJudge:
         for name in lost:
             if name in self._code.own_words:
                 continue
-            successor = _find_successor(name, self._contract, self._recorded, {*self._code.methods, *self._successors})
+            other_use = _describe_other_use(name, self._contract, self._recorded)
+            taken = {*self._code.methods, *self._successors}
+            successor = "" if other_use else _find_successor(name, self._contract, self._recorded, taken)
             element = _Meaning.read(self._recorded[name]).element
             if successor:
                 self._successors.add(successor)
                 now = _Meaning.read(self._contract.expects.get(successor, "")).element
                 of = f" (`{now}`, not `{element}`)" if element and now and element != now else ""
                 text = f"nobody calls `{name}` any more; it is most likely `{successor}` now{of}, which is lacking"
+            elif other_use:
+                text = f"nobody calls `{name}` any more: {other_use}"
             elif name == "on_parameters":
                 text = "nobody calls `on_parameters` any more: the node has no parameters"
             elif name in _LIFE_CYCLE:
@@ -269,12 +292,14 @@ class _PythonJudge:
             was_offered = use.name in self._recorded and use.name.startswith(_SENDING)
             if use.name in self._contract.offers or not (is_sending or was_offered):
                 continue
-            successor = _find_successor(use.name, self._contract, self._recorded, ())
-            now = f"; it is most likely `{successor}` now" if successor else ""
+            now, successor = self._describe_successor(use.name)
             any_more = " any more" if was_offered else ""
             self._tell(f"the node has no `{use.name}`{any_more}{now}", use, successor=successor)
             if was_offered:
                 self._keep(use.name)
+
+    def _describe_successor(self, name: str) -> tuple[str, str]:
+        return _describe_successor(name, self._contract, self._recorded, ())
 
     def _find_lost_uses_in_helper(self, path: str, data: bytes, lost: Collection[str]) -> None:
         """Tell what another file uses of what it calls the node, where that had it."""
@@ -287,8 +312,7 @@ class _PythonJudge:
             return  # a template, or a file of another Python: it is nobody's own class
         for use in uses:
             if use.name in lost:
-                successor = _find_successor(use.name, self._contract, self._recorded, ())
-                now = f"; it is most likely `{successor}` now" if successor else ""
+                now, successor = self._describe_successor(use.name)
                 message = f"the node of `{self._code.class_name}` has no `{use.name}` any more{now}"
                 names = (use.name, successor) if successor else ("", "")
                 self._findings.append(CodeFinding(message, use.line, use.column, False, path, *names))  # noqa: FBT003
@@ -325,6 +349,9 @@ class _PythonJudge:
 
     def _find_class(self, use: OwnField) -> tuple[str, tuple[str, ...]]:
         """Return the class that a chain of fields begins with, and the chain: that of an argument is what the node calls with."""
+        if use.root.endswith("()"):  # what a call of the node answers with
+            service = _Meaning.read(self._contract.offers.get(use.root[:-2], "")).message
+            return (f"{service}/Response" if service else ""), use.chain
         method, _, number = use.root.partition("#")
         message = _Meaning.read(self._contract.expects.get(method, "")).message
         if not number or not message:
@@ -395,9 +422,8 @@ def _judge_words(text: str, contract: Contract, recorded: Mapping[str, str]) -> 
     for name in recorded:
         if name in contract.names or name not in places:
             continue
-        successor = _find_successor(name, contract, recorded, {*places, *successors})
+        now, successor = _describe_successor(name, contract, recorded, {*places, *successors})
         successors.add(successor)
-        now = f"; it is most likely `{successor}` now" if successor else ""
         names = (name, successor) if successor else ("", "")
         message = f"`{name}` is nothing that is generated any more{now}"
         findings.append(CodeFinding(message, *places[name], False, "", *names))  # noqa: FBT003
@@ -461,38 +487,12 @@ def _find_lost_fields_in_words(
         head, _, field_name = name.rpartition(".")
         # Of names that stand for several classes nobody knows which one it is.
         is_elsewhere = any(each.startswith(".") and each.rpartition(".")[2] == field_name for each in contract.offers)
-        class_name = re.escape(head[1:].replace("/", "::"))
-        declared = re.compile(
-            rf"\b{class_name}(?:::\w++)?\s*+[&*]*+\s*+(\w+)|\b(\w++)\s*+=\s*+std::make_\w++<{class_name}>"
-        )
-        holders = "|".join(sorted({each[1] or each[2] for each in declared.finditer(code)}))
-        found = re.search(rf"\b(?:{holders})\s*(?:\.|->)\s*(?={field_name}\b)", code) if holders else None
+        service = head[1:].removesuffix("/Response")
+        calls = [each for each, text in contract.offers.items() if _Meaning.read(text).message == service]
+        found = find_field(code, field_name, head[1:].replace("/", "::"), calls)
         message, _ = _describe_lost_field(name, contract, recorded)
         if found and message and not is_elsewhere:
             yield name, message, found.end()
-
-
-def rename_likely(path: str, data: bytes, findings: Iterable[CodeFinding]) -> bytes:
-    """Return a file in which what findings tell of a likely new name has that name.
-
-    In Python each of them names its place; other code is only known by its words, and each of these is renamed.
-    """
-    renames = [each for each in findings if each.new_name]
-    if not path.endswith(".py"):
-        names = {each.old_name.encode(): each.new_name.encode() for each in renames}
-        return _CODE_WORDS.sub(lambda found: names.get(found[0], found[0]), data)
-    starts = [0, *(found.end() for found in re.finditer(rb"\n", data))]
-    # From the end, so that places before it stay what they are.
-    for each in sorted(renames, key=lambda each: (-each.line, -each.column)):
-        begin = starts[each.line - 1] + each.column - 1
-        old_name = each.old_name.encode()
-        # A parameter may have dots in its name: `arm.speed`.
-        found = next((word for word in _DOTTED_WORD.finditer(data, begin) if old_name in {word[0], word["last"]}), None)
-        if found and found[0] != old_name:
-            data = data[: found.start("last")] + each.new_name.encode() + data[found.end() :]
-        elif found:
-            data = data[: found.start()] + each.new_name.encode() + data[found.end() :]
-    return data
 
 
 def _holds_phrase(text: str, phrase: str) -> bool:

@@ -52,7 +52,7 @@ class OwnField:
     """A field that is read, set, or given to a message that is made: the last one of `chain`.
 
     `root` is the class that the chain begins with (`std_msgs/msg/Float32`, `my_msgs/action/Pick/Goal`), else the method and the
-    number of its argument: `receive_scan#0`.
+    number of its argument: `receive_scan#0`, or what a call of the node answers with: `call_reset()`.
     """
 
     root: str
@@ -128,6 +128,9 @@ class _CodeReader:
         # What it is called in the second place, too: `self.robot = node`, `robot = self.robot`.
         for _ in range(2):
             self._node_words |= set(self._find_node_words())
+        self._outermost = frozenset(self._list_functions())
+        self._answers: dict[str, dict[str, str]] = {}
+        self._answers = self._find_answers()
 
     def read(self) -> PythonCode:
         methods: dict[str, OwnName] = {}
@@ -208,8 +211,10 @@ class _CodeReader:
             if not isinstance(function, _Function):
                 continue
             roots = self._find_roots(function)
+            called = {id(each.func) for each in ast.walk(function) if isinstance(each, ast.Call)}
             for each in ast.walk(function):
-                if isinstance(each, ast.Attribute) and (traced := self._trace_fields(each, roots)):
+                is_field = isinstance(each, ast.Attribute) and id(each) not in called
+                if is_field and isinstance(each, ast.Attribute) and (traced := self._trace_fields(each, roots)):
                     column = (each.end_col_offset or 0) - len(each.attr.encode()) + 1
                     yield OwnField(*traced, each.end_lineno or each.lineno, column)
                 elif isinstance(each, ast.Call) and (made := self._find_class(each.func)):
@@ -223,6 +228,7 @@ class _CodeReader:
             each.arg: (self._find_class(each.annotation) or f"{function.name}#{number}", ())
             for number, each in enumerate(arguments)
         }
+        roots |= {name: (root, ()) for name, root in self._answers.get(function.name, {}).items()}
         # In the order of the text: `pose = message.pose`, `for point in pose.points`.
         taken = [each for each in ast.walk(function) if isinstance(each, ast.Assign | ast.For)]
         for each in sorted(taken, key=lambda each: each.lineno):
@@ -233,16 +239,47 @@ class _CodeReader:
                     roots[target.id] = traced if traced and not is_another else ("", ())
         return {name: root for name, root in roots.items() if root[0]}
 
+    def _find_answers(self) -> dict[str, dict[str, str]]:
+        """Return by function which of its names are futures of calls: what `add_done_callback` is given is called with one."""
+        answers: dict[str, dict[str, str]] = {}
+        functions = {each.name: each for each in ast.walk(self._tree) if isinstance(each, _Function)}
+        for outer in (each for each in self._list_functions() if isinstance(each, _Function)):
+            roots = self._find_roots(outer)
+            for each in ast.walk(outer):
+                if not (isinstance(each, ast.Call) and isinstance(each.func, ast.Attribute) and each.args):
+                    continue
+                future, callback = self._trace_fields(each.func.value, roots), each.args[0]
+                if each.func.attr == "add_done_callback" and future and future[0].endswith("()"):
+                    given = callback if isinstance(callback, ast.Lambda) else functions.get(_last_word(callback))
+                    names = [argument.arg for argument in given.args.args if argument.arg != "self"] if given else []
+                    home = given.name if isinstance(given, _Function) and given in self._outermost else outer.name
+                    answers.setdefault(home, {}).update(dict.fromkeys(names[:1], future[0]))
+        return answers
+
     def _trace_fields(self, expression: ast.expr, roots: Mapping[str, _Trace]) -> _Trace | None:
         """Return where an expression begins and which fields it goes through; items of a list are what the list is called."""
         if isinstance(expression, ast.Name):
             return roots.get(expression.id)
         if isinstance(expression, ast.Subscript):
             return self._trace_fields(expression.value, roots)
-        if isinstance(expression, ast.Call) and (made := self._find_class(expression.func)):
-            return made, ()
+        if isinstance(expression, ast.Call):
+            return self._trace_call(expression, roots)
+        if isinstance(expression, ast.Await):
+            return self._trace_fields(expression.value, roots)
         inner = self._trace_fields(expression.value, roots) if isinstance(expression, ast.Attribute) else None
         return (inner[0], (*inner[1], expression.attr)) if inner and isinstance(expression, ast.Attribute) else None
+
+    def _trace_call(self, call: ast.Call, roots: Mapping[str, _Trace]) -> _Trace | None:
+        """Return the class that a call makes, or the service that it asks: its answer and the future of that are one."""
+        if made := self._find_class(call.func):
+            return made, ()
+        taken = call.func
+        if isinstance(taken, ast.Attribute) and taken.attr.startswith("call_") and self._is_node(taken.value):
+            return f"{taken.attr}()", ()
+        if isinstance(taken, ast.Attribute) and taken.attr == "result":
+            future = self._trace_fields(taken.value, roots)
+            return future if future and future[0].endswith("()") and not future[1] else None
+        return None
 
     def _list_uses(self) -> tuple[list[OwnName], list[OwnName], list[OwnName]]:
         uses: list[OwnName] = []

@@ -20,7 +20,7 @@ from typing import Any
 from archgen.conformance.seen_record import RECORD_FILE
 from archgen.emit.file_tree import OutputError
 from archgen.emit.workspace.disk_files import explain_bad_path, fold_file_path
-from archgen.frozen import dataclass, field
+from archgen.frozen import dataclass, field, replace
 
 RECORD_FOLDER = ".archgen"
 _FORMAT = 1
@@ -147,6 +147,36 @@ def holds_conflict(data: bytes) -> bool:
     """Whether git's marks of a conflict stand in a file."""
     lines = data.splitlines()
     return any(line.startswith(b"<<<<<<< ") for line in lines) and any(line.startswith(b">>>>>>> ") for line in lines)
+
+
+def find_former_project(record: RunRecord, project: str, wanted_paths: frozenset[str]) -> str:
+    """Return another project whose own code this one would begin anew, in packages that are called after it; empty where there is none.
+
+    Where own code of this project is recorded, both share the workspace.
+    """
+    found: set[str] = set()
+    for path, file in record.files.items():
+        projects = {run.partition(" ")[0] for run in file.runs} if file.is_own else set[str]()
+        if project in projects:
+            return ""
+        found |= {each for each in projects if _rename_packages(path, each, project) in wanted_paths - {path}}
+    return min(found, default="")
+
+
+def _rename_packages(path: str, old_project: str, new_project: str) -> str:
+    return re.sub(rf"(?<![^/]){re.escape(old_project)}(?=_)", new_project, path)
+
+
+def take_over_runs(record: RunRecord, old_project: str, project: str) -> RunRecord:
+    """Return a record in which what was made for a project under its former id was made for it under the present one."""
+    old_run = re.compile(rf"{re.escape(old_project)}(?= |\Z)")
+    files = {
+        path: replace(
+            file, runs=frozenset(old_run.sub(project, run, 1) if old_run.match(run) else run for run in file.runs)
+        )
+        for path, file in record.files.items()
+    }
+    return replace(record, files=files)
 
 
 def read_other_records(workspace: Path, backend: str) -> Mapping[str, str]:

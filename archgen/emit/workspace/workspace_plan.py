@@ -308,16 +308,15 @@ class _Planner:
         known = self.old_record.files.get(entry.successor)
         if known and entry.successor in self.files_by_path:
             return entry.successor if self.disk.read(entry.successor).has_digest(known.digests) else ""
+        own_ports = _list_ports(entry)
         likeness = {
-            each: (
-                len(self.entries[each].meanings.keys() & entry.meanings.keys()),
-                each.rpartition("/")[2] == path.rpartition("/")[2],
-            )
+            each: (len(_list_ports(self.entries[each]) & own_ports), each.rpartition("/")[2] == path.rpartition("/")[2])
             for each, file in self.writes.items()
             if file.once and each not in self.old_record.files
+            if self.entries[each].meanings.keys() & entry.meanings.keys()
         }
         best = max(likeness, key=lambda each: (likeness[each], each), default="")
-        return best if best and likeness[best][0] else ""
+        return best if best and any(likeness[best]) else ""
 
     def finish(self) -> WorkspacePlan:
         """Return the plan."""
@@ -349,6 +348,11 @@ class _Planner:
             RunRecord(self.old_record.backend, intended_files),
             RunRecord(self.old_record.backend, self.entries),
         )
+
+
+def _list_ports(entry: RecordedFile) -> set[str]:
+    """Return the names of a file that stand for ports: many files have a timer, or know the fields of a message."""
+    return {each for each in entry.meanings if not each.startswith((".", "'", "on_"))}
 
 
 def _choose_mode(file: GeneratedFile, entry: RecordedFile | None, on_disk: DiskFile) -> int:

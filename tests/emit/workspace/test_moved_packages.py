@@ -6,7 +6,7 @@ import pytest
 
 from archgen.emit.workspace.disk_files import GeneratedFile
 from archgen.emit.workspace.moved_packages import find_moved_packages
-from archgen.emit.workspace.own_code import rename_likely
+from archgen.products.own_code_patch import rename_likely
 
 WANTED = {
     path.rpartition("/")[2]: [GeneratedFile(path, b"", once=is_once)]

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import pytest
 
-from archgen.emit.workspace.own_code import CodeReport, judge_own_code, read_contract, rename_likely
+from archgen.emit.workspace.own_code import CodeReport, judge_own_code, read_contract
+from archgen.products.own_code_patch import rename_likely
 
 OLD = read_contract(["receive_a=x.a:p/msg/A"], ["publish_b=x.b:p/msg/B", "'gain'=:double"])
 

@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from pathlib import Path
+
+import pytest
 
 from archgen.plugins.ros_code.message_fields import list_message_fields
 from tests.plugins.ros_code.test_ros2_cpp import write_project
@@ -114,3 +117,132 @@ def test_own_code_in_cpp_is_told_of_fields_that_are_gone(tmp_path: Path) -> None
         "`rt_msgs/msg/Spot` has no field `x` any more; it is most likely `left` now",
         "`rt_msgs/msg/Seen` has no field `name` any more",
     ]
+
+
+SERVING = """\
+archgen: 1
+project: {id: rt, title: Robot}
+ros: {distro: jazzy}
+groups:
+  g:
+    components:
+      drill: {outputs: {set_mode: SetMode}, node: {language: LANGUAGE}}
+      wheels: {inputs: {mode: drill.set_mode}, outputs: {}, node: {language: LANGUAGE}}
+types:
+  SetMode: {request: {mode: string}, response: {ok: bool}}
+"""
+ANSWERS = {
+    "awaited": (
+        "    async def start(self):\n        answer = await self.node.call_mode(1)\n        return answer.ok\n",
+        [("9", "23")],
+    ),
+    "at once": ("    async def start(self):\n        return (await self.node.call_mode(1)).ok\n", [("8", "47")]),
+    "future": (
+        "    def start(self):\n        future = self.node.call_mode(1)\n        return future.result().ok, future.ok()\n",
+        [("9", "32")],
+    ),
+    "future that is awaited": (
+        "    async def start(self):\n        f = self.node.call_mode(1)\n        a = await f\n        return a.ok\n",
+        [("10", "18")],
+    ),
+    "method": (
+        (
+            "    def start(self):\n        self.node.call_mode(1).add_done_callback(self.hear)\n\n"
+            "    def hear(self, future):\n        self.ok = future.result().ok\n"
+        ),
+        [("11", "35")],
+    ),
+    "lambda": (
+        (
+            "    def start(self):\n        f = self.node.call_mode(1)\n"
+            "        f.add_done_callback(lambda done: print(done.result().ok))\n"
+        ),
+        [("9", "62")],
+    ),
+    "function inside": (
+        (
+            "    def start(self):\n        def hear(done):\n            return done.result().ok\n\n"
+            "        self.node.call_mode(1).add_done_callback(hear)\n"
+        ),
+        [("9", "34")],
+    ),
+    "of others": (
+        "    def start(self, other):\n        answer = other.call_it(1)\n        return answer.ok, other.result().ok\n",
+        [],
+    ),
+}
+CPP_ANSWERS = {
+    "future": "auto f = node_.call_mode(r);\n  print(f.get()->ok);",
+    "future that is taken": "auto f = node_.call_mode(r);\n  auto a = f.get();\n  print(a->ok);",
+    "callback": "node_.call_mode(r, [this](const auto & a) {\n    print(a->ok); });",
+    "typed callback": "node_.call_mode(r, [this](rt_msgs::srv::SetMode::Response::SharedPtr a) {\n    print(a->ok); });",
+}
+
+
+def _change_service(folder: Path, language: str, own_path: str, add_code: Callable[[str], str], new: str) -> list[str]:
+    robot, backend = SERVING.replace("LANGUAGE", language), f"ros2_{language}"
+    _generate(folder, robot, backend, 0)
+    own = folder / "ws" / "src" / own_path
+    own.write_text(add_code(own.read_text("utf-8")), encoding="utf-8")
+    assert _generate(folder, robot, backend, 0) == []
+    changed = robot.replace("  SetMode: {request: {mode: string}, response: {ok: bool}}", f"  SetMode: {new}")
+    told = _generate(folder, changed, backend, 1)
+    assert _generate(folder, changed, backend, 1) == told
+    return [line for line in told if "wheels" in line]
+
+
+@pytest.mark.parametrize("form", ANSWERS)
+def test_a_client_in_python_is_told_of_fields_of_the_answer_that_are_gone(tmp_path: Path, form: str) -> None:
+    code, places = ANSWERS[form]
+    text = f'"""Mine."""\n\n\nclass Wheels:\n    def __init__(self, node):\n        self.node = node\n{code}'
+    if not places:
+        robot = SERVING.replace("LANGUAGE", "python")
+        _generate(tmp_path, robot, "ros2_python", 0)
+        (tmp_path / "ws/src/rt_g/rt_g/wheels.py").write_text(text, encoding="utf-8")
+        assert _generate(tmp_path, robot.replace("{ok: bool}", "{done: bool}"), "ros2_python", 0) == []
+        return
+    new = "{request: {mode: string}, response: {done: bool}}"
+    told = _change_service(tmp_path, "python", "rt_g/rt_g/wheels.py", lambda _: text, new)
+    words = "`rt_msgs/srv/SetMode/Response` has no field `ok` any more; it is most likely `done` now"
+    assert told == [f"error: src/rt_g/rt_g/wheels.py:{line}:{column}: {words}" for line, column in places]
+
+
+@pytest.mark.parametrize("form", CPP_ANSWERS)
+def test_a_client_in_cpp_is_told_of_fields_of_the_answer_that_are_gone(tmp_path: Path, form: str) -> None:
+    new = "{request: {mode: string}, response: {done: bool}}"
+    own_path = "rt_g/src/wheels_behaviour.cpp"
+    code = f"\nvoid start()\n{{\n  {CPP_ANSWERS[form]}\n}}\n"
+    (told,) = _change_service(tmp_path, "cpp", own_path, lambda old: old + code, new)
+    assert "`rt_msgs/srv/SetMode/Response` has no field `ok` any more; it is most likely `done` now" in told
+
+
+@pytest.mark.parametrize("language", ["python", "cpp"])
+def test_a_service_that_becomes_an_action_is_told_with_what_is_called_then(tmp_path: Path, language: str) -> None:
+    own_path = "rt_g/rt_g/wheels.py" if language == "python" else "rt_g/src/wheels_behaviour.cpp"
+    code = {
+        "python": "class Wheels:\n    def __init__(self, node):\n        self.node = node\n\n    def go(self):\n        NAME(1)\n",
+        "cpp": "\nvoid go()\n{\n  NAME(1);\n}\n",
+    }[language]
+    robot, backend = SERVING.replace("LANGUAGE", language), f"ros2_{language}"
+    action = robot.replace("response: {ok: bool}", "response: {ok: bool}, feedback: {share: float64}")
+    uses = (robot, "call_mode", "serve_set_mode"), (action, "send_mode", "execute_set_mode")
+    for folder, ((old, use, method), (new, new_use, new_method), word) in (
+        (tmp_path / "a", (*uses, "action")),
+        (tmp_path / "b", (*reversed(uses), "service")),
+    ):
+        folder.mkdir()
+        _generate(folder, old, backend, 0)
+        own = folder / "ws" / "src" / own_path
+        text = code.replace("NAME", f"{'self.node.' if language == 'python' else 'node_.'}{use}")
+        own.write_text(text if language == "python" else own.read_text("utf-8") + text, encoding="utf-8")
+        server = own.with_name(own.name.replace("wheels", "drill"))
+        server.write_text(f"{server.read_text('utf-8')}\n", encoding="utf-8")
+        assert _generate(folder, old, backend, 0) == []
+        told = "\n".join(_generate(folder, new, backend, 1))
+        assert f"`{use}`" in told
+        assert f"any more: `g.wheels.mode` is {'an' if word == 'action' else 'a'} {word} now, with `{new_use}`" in told
+        assert f"`{method}`" in told
+        assert (
+            f"any more: `g.drill.set_mode` is {'an' if word == 'action' else 'a'} {word} now, with `{new_method}`"
+            in told
+        )

@@ -537,3 +537,84 @@ def test_other_files_of_the_package_are_told_of_what_the_node_had(farm: Path, ba
         )
     helper.write_text("def pull(node):\n    node.publish_halt(True)\n", encoding="utf-8")
     assert generate(farm, backend, change(ROBOT, *CHANGES["an output is renamed"][0]), 0) == []
+
+
+def _read_all(folder: Path) -> dict[Path, bytes]:
+    return {path: path.read_bytes() for path in sorted(folder.rglob("*")) if path.is_file()}
+
+
+def test_own_code_follows_a_project_that_gets_another_id(tmp_path: Path) -> None:
+    generate(tmp_path, "ros2_python", ROBOT, 0)
+    guard = find_own(tmp_path, "base/guard", "ros2_python")
+    guard.write_text(GUARD, encoding="utf-8")
+    renamed = ROBOT.replace("id: farm", "id: ranch")
+    (tmp_path / "archgen.yaml").write_text(renamed, encoding="utf-8")
+    before = _read_all(tmp_path)
+    for more in ([], ["--check"], ["--was", "frm"]):
+        said = archgen_here("generate", "ros2_python", "-o", "ws", *more, cwd=tmp_path, status=1).stderr.decode()
+        assert "archgen.yaml:2:" in said
+        assert "that was made for the project `farm`: `ranch` would begin it anew beside it" in said
+        assert before == _read_all(tmp_path)
+    lines = generate(tmp_path, "ros2_python", renamed, 1, "--was", "farm")
+    assert any("it may become ranch_base/ranch_base/guard.py, which is empty" in line for line in lines), lines
+    assert [each.name for each in sorted((tmp_path / "ws" / "src").glob("farm_*"))] == ["farm_base"]
+    guard.rename(tmp_path / "ws" / "src" / "ranch_base" / "ranch_base" / "guard.py")
+    assert generate(tmp_path, "ros2_python", renamed, 0) == []
+    assert not list((tmp_path / "ws" / "src" / "farm_base").rglob("*.py"))
+
+
+def test_two_projects_of_one_shape_share_a_workspace(tmp_path: Path) -> None:
+    generate(tmp_path, "ros2_python", ROBOT, 0)
+    guard = find_own(tmp_path, "base/guard", "ros2_python")
+    guard.write_text(GUARD, encoding="utf-8")
+    other = ROBOT.replace("id: farm", "id: ranch")
+    generate(tmp_path, "ros2_python", other, 0, "--was", "ranch")
+    for robot in (other, ROBOT):
+        assert generate(tmp_path, "ros2_python", robot, 0) == []
+    assert guard.read_text("utf-8") == GUARD
+
+
+RIG = """\
+archgen: 1
+project: {id: rt, title: Robot}
+ros: {distro: jazzy}
+generate: {into: ws, backends: {ros2_python: {}, ros2_cpp: {}}}
+types: {Speed: {fields: {value: float64}}}
+groups:
+  rig:
+    components:
+      drill: {outputs: {speed: Speed}, timing: {rate: 5 Hz}, node: {language: DRILL}}
+      wheels: {inputs: {drill: drill.speed}, outputs: {spin: Speed}, timing: {rate: 5 Hz}, node: {language: WHEELS}}
+"""
+
+
+def _make_rig(folder: Path, drill: str, wheels: str, status: int, *more: str) -> str:
+    text = RIG.replace("DRILL", drill).replace("WHEELS", wheels)
+    (folder / "archgen.yaml").write_text(text, encoding="utf-8")
+    return archgen_here("generate", *more, cwd=folder, status=status).stderr.decode()
+
+
+def test_a_node_in_another_language_moves_its_package_in_one_run(tmp_path: Path) -> None:
+    _make_rig(tmp_path, "cpp", "cpp", 0)
+    said = _make_rig(tmp_path, "python", "cpp", 1, "--check")
+    assert "is made by the backend" not in said
+    assert "error" not in said
+    said = _make_rig(tmp_path, "python", "cpp", 0)
+    assert {each.name for each in (tmp_path / "ws" / "src").glob("rt_rig*")} == {"rt_rig", "rt_rig_cpp"}
+    assert (tmp_path / "ws/src/rt_rig/rt_rig/drill.py").is_file()
+    assert _make_rig(tmp_path, "python", "cpp", 0, "--check") == ""
+    _make_rig(tmp_path, "cpp", "cpp", 0)
+    assert (tmp_path / "ws/src/rt_rig/src/drill_behaviour.cpp").is_file()
+    assert "stale" not in _make_rig(tmp_path, "cpp", "cpp", 0, "--check")
+
+
+def test_another_node_that_has_a_timer_too_is_no_successor(tmp_path: Path) -> None:
+    _make_rig(tmp_path, "cpp", "cpp", 0)
+    for name in ("drill", "wheels"):
+        own = tmp_path / f"ws/src/rt_rig/src/{name}_behaviour.cpp"
+        own.write_text(f"{own.read_text('utf-8')}// Mine.\n", encoding="utf-8")
+    said = _make_rig(tmp_path, "python", "cpp", 1)
+    (line,) = [each for each in said.splitlines() if "/drill_behaviour.cpp" in each]
+    assert "wheels" not in line
+    (line,) = [each for each in said.splitlines() if "rt_rig/src/wheels_behaviour.cpp" in each]
+    assert "it may become src/rt_rig_cpp/src/wheels_behaviour.cpp" in line
