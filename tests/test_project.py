@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import os
-import time
 from pathlib import Path
 
 import pytest
@@ -193,9 +192,8 @@ def test_hostile_things_in_the_folder(tmp_path: Path) -> None:
     (root / "f.yaml").write_bytes(b"groups: \xff")
     (root / os.fsdecode(b"g\xff.yaml")).write_text("hosts: {g: }")
     (root / "h.yaml").write_text("hosts: {h: }")
-    start = time.monotonic()
+    # A pipe that is opened would be waited for without an end.
     loaded = load_project(root)
-    assert time.monotonic() - start < 30
     assert names(loaded) == ["archgen.yaml", "h.yaml"]
     assert sorted(findings(loaded)) == [
         "a.yaml:1:1 syntax-error: this is a named pipe, not a file",

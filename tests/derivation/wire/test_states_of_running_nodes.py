@@ -47,7 +47,7 @@ def spin(node, seconds):
 
 
 def wait_until(node, condition):
-    end = time.monotonic() + 20
+    end = time.monotonic() + 120
     while not condition() and time.monotonic() < end:
         rclpy.spin_once(node, timeout_sec=0.02)
     return condition()
