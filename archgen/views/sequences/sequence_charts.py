@@ -13,6 +13,7 @@ from archgen.model.port_media import is_physical
 from archgen.model.step_connections import ConnectedStep
 from archgen.model.use_case_steps import StepEnd
 from archgen.timing.chains.use_case_times import UseCaseTimes
+from archgen.timing.figures.timing_values import sum_fractions
 from archgen.views import short_figures
 from archgen.views.inline_text import count_noun
 from archgen.views.lookup import Lookup
@@ -245,7 +246,7 @@ def explain_total(lookup: Lookup, use_case_id: str) -> str:
     if times is None or not times.total.complete or times.total.value is None:
         return total
     known = [each.value for each in times.steps if each and each.value]
-    is_less = len(known) > 1 and times.total.value < sum(known)
+    is_less = len(known) > 1 and times.total.value < sum_fractions(known)
     return f"{total}; the steps add up to more, but what several of them wait for counts once" if is_less else total
 
 
