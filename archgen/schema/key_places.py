@@ -69,6 +69,8 @@ def find_key_home(key: str, path: KeyPath, kind: str) -> str | None:
         return _POLICY_KEYS[str(path[-1])][key] if is_policy else _find_changes_help(key)
     port_use = _PORT_USES.get(key) if path[:1] == ("nodes",) and len(path) == _NODE_DEPTH else None
     parent = _find_parent(key, kind) if port_use is None else None
+    if path == ("generate",) and find_closest(key, ("backends", "into")) is None:
+        parent = "backends"  # a generator's name
     if parent is not None or key in TELLING_NOTHING:
         return f"write it below `{parent}`: `{parent}: {{{key}: ...}}`" if parent else None
     if key in _READER_KEYS and kind != "Input":

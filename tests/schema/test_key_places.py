@@ -74,6 +74,8 @@ def _component(text: str) -> str:
         ("hosts: {pc: {runs: [n]}}", "a node says where it runs: `nodes: {NODE: {host: HOST}}`"),
         ("hosts: {pc: {gpu: true}}", "what nodes share beside the cores is a resource: `resources: {gpu: HOST}`"),
         ("chains: {c: {through: [a, b], max: 300}}", "did you mean `deadline`?"),
+        ("generate: {ros2_python: }", "write it below `backends`: `backends: {ros2_python: ...}`"),
+        ("generate: {backend: [start]}", "did you mean `backends`?"),
         ("nodes: {n: {m: {package: urg}}}", "it looks like a ROS node of its own: begin it in the column of `n`"),
     ],
 )  # fmt: skip
