@@ -156,7 +156,8 @@ class SetWalks(ast.NodeVisitor):
     def visit_Call(self, node: ast.Call) -> None:
         """Judge what takes something in order; what does not see the order may take a generator over a set."""
         name = name_of(node.func)
-        has_key = any(keyword.arg == "key" for keyword in node.keywords)
+        # Behind `order_naturally` no two names are equal.
+        has_key = any(each.arg == "key" and ast.unparse(each.value) != "order_naturally" for each in node.keywords)
         if name in BLIND_TO_ORDER and not has_key:
             self.blind.update(id(each.value if isinstance(each, ast.Starred) else each) for each in node.args)
         elif name in KEEPS_ORDER or name in BLIND_TO_ORDER:
@@ -256,6 +257,7 @@ def test_a_walk_over_a_set_is_found(line: str) -> None:
     "line",
     [
         "for name in sorted({a, b}): pass",
+        "sorted({a, b}, key=order_naturally)",
         "sorted(name.id for name in {a, b})",
         "any(name in text for name in {a, b})",
         "{name.lower() for name in {a, b}}",
