@@ -118,10 +118,7 @@ def _has_program_name(stream: BinaryIO) -> bool:
         with zipfile.ZipFile(stream) as archive, archive.open(PROGRAM_PART) as part:
             return f"<Application>{PROGRAM_NAME}</Application>".encode() in part.read(_EDGE_BYTES)
     # Whatever is wrong with the file, archgen did not write it.
-    except (
-        *(OSError, KeyError, ValueError, RuntimeError, NotImplementedError, EOFError, struct.error, zipfile.BadZipFile),
-        zlib.error,
-    ):
+    except (OSError, KeyError, ValueError, RuntimeError, EOFError, struct.error, zipfile.BadZipFile, zlib.error):
         return False
 
 

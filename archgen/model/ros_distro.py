@@ -4,9 +4,7 @@ from __future__ import annotations
 
 ROS_1_DISTROS = frozenset({"groovy", "hydro", "indigo", "jade", "kinetic", "lunar", "melodic", "noetic"})
 """The ROS 1 distributions that may still be in use. Any other name, or none, counts as ROS 2."""
-PAST_DISTROS = ROS_1_DISTROS | {
-    *("ardent", "bouncy", "crystal", "dashing", "eloquent", "foxy", "galactic", "iron"),
-}
+PAST_DISTROS = ROS_1_DISTROS | {"ardent", "bouncy", "crystal", "dashing", "eloquent", "foxy", "galactic", "iron"}
 """Distributions that are no longer maintained: right names, also where archgen holds no interfaces of them."""
 
 

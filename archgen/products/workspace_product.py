@@ -25,7 +25,7 @@ from archgen.products.report_cache import cache_folder
 from archgen.products.trusted_backends import refuse_untrusted_pass
 from archgen.views.generation import find_view_maker, make_generation_views
 from archgen.views.generation.architecture_needs import find_unmet_needs
-from archgen.views.generation.generation_context import GenerationContext, tell_left_out
+from archgen.views.generation.generation_context import NOT_GENERATED, GenerationContext, tell_left_out
 from archgen.views.generation.model_paths import index_model_paths, write_model_paths
 
 
@@ -97,14 +97,15 @@ def write_workspace(
     if clashes := tuple(_find_clashes(files, backend, folder, request.leaving)):
         return WorkspaceResult(folder, None, (*findings, *clashes), is_in_the_way=True)
     project = checked_project.architecture.project
-    former = find_former_project(
-        read_run_record(folder, backend.id), project.id, frozenset(file.path for file in files)
-    )
-    if former and request.former_project not in {former, project.id}:
-        return WorkspaceResult(folder, None, (*findings, _ask_for_former_id(project, former, folder)))
     run = _name_run(checked_project, options, request.host)
     request = replace(request, removes_unmade=request.removes_unmade and not checked_project.has_errors)
-    return WorkspaceResult(folder, _write_files(files, backend, folder, run, request), findings)
+    if request.former_project not in {"", project.id}:
+        findings = (*findings, *_find_unknown_id(project, request.former_project, folder, backend))
+    try:
+        plan = _write_files(files, backend, folder, run, request)
+    except _FormerProjectError as error:
+        return WorkspaceResult(folder, None, (*findings, _ask_for_former_id(project, error.former_project, folder)))
+    return WorkspaceResult(folder, plan, findings)
 
 
 def write_workspaces(
@@ -244,6 +245,14 @@ def _find_clashes(
             return
 
 
+class _FormerProjectError(Exception):
+    """A folder has code of somebody's own that was made for another project, or for this one under another id."""
+
+    def __init__(self, former_project: str) -> None:
+        super().__init__(former_project)
+        self.former_project = former_project
+
+
 def _ask_for_former_id(project: ProjectInfo, former: str, folder: Path) -> Diagnostic:
     return tell_left_out(
         f"{folder} has code of somebody's own that was made for the project `{former}`: `{project.id}` would begin it anew beside it",
@@ -251,6 +260,16 @@ def _ask_for_former_id(project: ProjectInfo, former: str, folder: Path) -> Diagn
         help_line=f"is it this project under its former id, `--was {former}` takes it over and says what of the code moves where; "
         f"are they two projects, `--was {project.id}` leaves all of `{former}` as it is",
     )
+
+
+def _find_unknown_id(project: ProjectInfo, former: str, folder: Path, backend: Backend) -> Iterator[Diagnostic]:
+    files = read_run_record(folder, backend.id).files.values()
+    known_ids = {run.partition(" ")[0] for file in files for run in file.runs}
+    if known_ids and former not in known_ids:
+        message = f"nothing that `{backend.id}` made in {folder} was made for `{former}`: `--was` changes nothing of it"
+        yield Diagnostic(
+            NOT_GENERATED.name, message, project.at, Severity.WARNING, help=did_you_mean(former, sorted(known_ids))
+        )
 
 
 def _write_files(
@@ -273,9 +292,12 @@ def _write_files(
 def _plan_files(
     files: Sequence[GeneratedFile], backend: Backend, folder: Path, run: str, request: WorkspaceRequest
 ) -> WorkspacePlan:
-    record = read_run_record(folder, backend.id)
+    record, project_id = read_run_record(folder, backend.id), run.partition(" ")[0]
+    former = find_former_project(record, project_id, frozenset(file.path for file in files))
+    if former and request.former_project not in {former, project_id}:
+        raise _FormerProjectError(former)
     if request.former_project:
-        record = take_over_runs(record, request.former_project, run.partition(" ")[0])
+        record = take_over_runs(record, request.former_project, project_id)
     known_paths = {*record.files, *(file.path for file in files)}
     fits = KnownFits(cache_folder(), folder, backend.id)
     choices = UserChoices(

@@ -300,3 +300,16 @@ def test_a_node_says_how_it_is_called_and_what_it_calls_otherwise(tmp_path: Path
     assert "C++" in on_paper
     words = re.findall(r"Text\(text='([^']*)'", on_paper)
     assert words[words.index("out") : words.index("tf") + 1] == ["out", " is ", "/x", ", ", "/tf", " is ", "tf"]
+
+
+def test_the_page_of_a_node_has_the_open_points_of_the_components_that_it_serves(tmp_path: Path) -> None:
+    (tmp_path / "archgen.yaml").write_text(f"{PLAIN}nodes: {{n: {{implements: g.b, package: p}}}}\n")
+    checked = pipeline.check_project(tmp_path)
+    lookup = make_lookup(checked.architecture, checked.findings)
+    pages = {page.anchor: page for page in make_pages(lookup, DocumentEdition())}
+    (section,) = (each for each in pages["node:n"].section.sections if each.title == "Open points")
+    (table,) = section.blocks
+    assert isinstance(table, Table)
+    words = " ".join(read_text(cell) for row in table.rows for cell in row)
+    assert "g.b still lacks" in words.replace("`", "")
+    assert "g.a still lacks" not in words.replace("`", "")

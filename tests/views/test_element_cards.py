@@ -75,6 +75,11 @@ def test_an_input_tells_where_its_data_comes_from(lookup: Lookup) -> None:
     assert "message" not in card
     order = told(make_port_card(lookup, lookup.architecture.inputs["g.look.order"]))
     assert order["sources"] == ("outside: A guest",)
+    reader = told(make_component_card(lookup, lookup.architecture.components["g.look"]))
+    assert reader["inputs"] == (
+        "image <- g.cam.image (sensor_msgs/msg/Image)",
+        "order (std_msgs/msg/String) <- outside: A guest",
+    )
 
 
 def test_a_node_and_its_topic_name_each_other(lookup: Lookup) -> None:

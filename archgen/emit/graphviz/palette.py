@@ -26,9 +26,7 @@ FADED = "#a3abb2"
 FEEDBACK = "#b25e00"
 """Heads of arrows that run against the order of columns."""
 
-HUES = (
-    *("#5b6770", "#0072b2", "#00795b", "#7a6a00", "#b04a00", "#a0407c", "#5b4fa8", "#8a3b3b", "#1b6e8c", "#6b5b3e"),
-)
+HUES = ("#5b6770", "#0072b2", "#00795b", "#7a6a00", "#b04a00", "#a0407c", "#5b4fa8", "#8a3b3b", "#1b6e8c", "#6b5b3e")
 """Ten hues for groups, each with at least 5:1 on white. To the colour-blind some pairs look alike (simulated: 2 of 45
 pairs for protan, 4 for deutan vision are nearer than CIE76 10), so a hue never says anything alone: the title is beside
 it.
@@ -38,13 +36,11 @@ _DARK_HUES = (
     *("#a9b4bd", "#5db2e8", "#4cc3a0", "#cdbb3f", "#f09a5c", "#e39ac6", "#b0a6f2", "#e59a9a", "#6fc3df", "#cbb68f"),
 )
 
-PARTNER_HUES = (*("#219e8b", "#5e2206", "#4606c0", "#db514e", "#7e7bf8", "#b848a4", "#32761e", "#603868", "#ab2a54"),)
+PARTNER_HUES = ("#219e8b", "#5e2206", "#4606c0", "#db514e", "#7e7bf8", "#b848a4", "#32761e", "#603868", "#ab2a54")
 """Nine fills for partners, the first ones the least alike; each with at least 3:1 on paper, and told apart by the colour-blind
 (searched for and measured by CIEDE2000: at least 10 between any two for protan, deutan and tritan vision, 17 for others).
 """
-_DARK_PARTNER_HUES = (
-    *("#68e3d1", "#f15f13", "#9ba4ed", "#aa666c", "#9366b1", "#e4c9fb", "#cdf8a0", "#c48eb0", "#ffa6a8"),
-)
+_DARK_PARTNER_HUES = ("#68e3d1", "#f15f13", "#9ba4ed", "#aa666c", "#9366b1", "#e4c9fb", "#cdf8a0", "#c48eb0", "#ffa6a8")
 
 INK = "#1b2126"
 """The text on a fill that is as light in the dark as on paper."""

@@ -12,7 +12,7 @@ CATEGORIES = (
 )
 """Categories of components; those of two words come before those that begin as they do."""
 PORTS = ("event data port", "event port", "data port")
-ACCESSES = (*("virtual bus access", "bus access", "data access", "subprogram group access", "subprogram access"),)
+ACCESSES = ("virtual bus access", "bus access", "data access", "subprogram group access", "subprogram access")
 _PLAIN_KINDS = (*PORTS, "parameter", "feature group", "port group", "feature")
 _WORDS = {words: tuple(words.split()) for words in (*CATEGORIES, *ACCESSES, *_PLAIN_KINDS)}
 

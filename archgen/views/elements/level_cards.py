@@ -143,8 +143,10 @@ def make_component_type_card(lookup: Lookup, component_type: ComponentType) -> E
 
 
 def _describe_input(lookup: Lookup, port: Input) -> str:
-    type_note = f" ({port.type})" if port.type else ""
-    return f"{port.name}{type_note} <- {'; '.join(_describe_sources(lookup, port)) or '?'}"
+    sources = "; ".join(_describe_sources(lookup, port)) or "?"
+    # Outputs come with their types.
+    type_note = f" ({port.type})" if port.type and f"({port.type})" not in sources else ""
+    return f"{port.name}{type_note} <- {sources}"
 
 
 def _describe_sources(lookup: Lookup, port: Input) -> Iterator[str]:

@@ -563,6 +563,15 @@ def test_own_code_follows_a_project_that_gets_another_id(tmp_path: Path) -> None
     assert not list((tmp_path / "ws" / "src" / "farm_base").rglob("*.py"))
 
 
+def test_a_former_id_for_which_nothing_was_made_is_told(tmp_path: Path) -> None:
+    generate(tmp_path, "ros2_python", ROBOT, 0)
+    words = ("generate", "ros2_python", "-o", "ws", "--was")
+    said = archgen_here(*words, "frm", cwd=tmp_path, status=0).stderr.decode()
+    assert "nothing that `ros2_python` made in ws was made for `frm`: `--was` changes nothing of it" in said
+    assert "did you mean `farm`?" in said
+    assert "was made for" not in archgen_here(*words, "farm", cwd=tmp_path, status=0).stderr.decode()
+
+
 def test_two_projects_of_one_shape_share_a_workspace(tmp_path: Path) -> None:
     generate(tmp_path, "ros2_python", ROBOT, 0)
     guard = find_own(tmp_path, "base/guard", "ros2_python")
