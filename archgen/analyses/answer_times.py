@@ -272,14 +272,12 @@ def _describe_run(chain_id: str, run: LateRun) -> str:
 
 def _describe_bound(analysis: Analysis, late_chain: JudgedChain) -> str:
     """Describe how long a chain takes, or why nobody can say."""
-    from archgen.timing.chains.unfound_bounds import find_overloaded_hosts, find_unfound_places
+    from archgen.timing.chains.unfound_bounds import describe_overload, find_unfound_places
 
     bound, deadline = late_chain.bound, late_chain.chain.deadline
     if is_boundless(bound):
-        hosts = join_words([f"`{host}`" for host in find_overloaded_hosts(analysis, late_chain.terms)])
-        return (
-            f"it may take any time, for more is to be done on {hosts} than can be" if hosts else "it may take any time"
-        )
+        overload = describe_overload(analysis, late_chain.terms, "`")
+        return f"it may take any time, for {overload}" if overload else "it may take any time"
     if late_chain.verdict == "missed" and late_chain.best.value is not None:
         return f"it takes at least {figure_wording.format_duration(late_chain.best.value)}"
     if bound.value is None or (deadline is not None and bound.value <= deadline.value and is_unfound(bound)):
@@ -296,8 +294,10 @@ def _label_largest_part(architecture: Architecture, analysis: Analysis, late_cha
     Where a host has too much to do, or leaves no bound to find, the label is at the host: the figures of the elements
     that happen to run there may all be innocent.
     """
-    from archgen.timing.chains.unfound_bounds import find_overloaded_hosts, find_unfound_places
+    from archgen.timing.chains.unfound_bounds import find_overloaded_hosts, find_saturated_links, find_unfound_places
 
+    for link_id in find_saturated_links(late_chain.terms):
+        return Label(architecture.links[link_id].at, "more is sent over it than it carries")
     for host_id in find_overloaded_hosts(analysis, late_chain.terms):
         boundless_ids = [
             f"`{term.activity}`"

@@ -97,4 +97,7 @@ def _fold(text: str) -> str:
 def _fold_data(data: object) -> object:
     if isinstance(data, dict):
         return tuple((_fold(str(key)), _fold_data(value)) for key, value in data.items())
-    return [_fold_data(value) for value in data] if isinstance(data, list) else _fold(str(data))
+    if not isinstance(data, list):
+        return _fold(str(data))
+    entries = [_fold_data(value) for value in data]
+    return entries[0] if len(entries) == 1 else entries  # brackets around one are signs, too

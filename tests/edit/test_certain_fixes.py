@@ -17,6 +17,7 @@ SLIPS = {
     "status: existing": "Status: existing",
     "wcet: 20 ms": "wcet: 20 MS",
     "host: onboard_pc": "host: onboard-pc",
+    "trigger: [persons]": "trigger: persons",
 }
 
 

@@ -59,7 +59,7 @@ def write_bound(bound: Fraction | None) -> str:
 def format_proposal(proposal: Proposal, width: int | None = None, *, shows_tried: bool = True) -> Iterator[str]:
     """Yield the floors that no configuration undercuts, all that was tried, and the best of it."""
     if not proposal.tried[0].late:
-        yield "Each chain with a deadline is met, or lacks figures: there is nothing to do."
+        yield _say_that_none_is_late(proposal)
         return
     rows = [
         (name, f"deadline {write_bound(proposal.deadlines[name])}", describe_floor(proposal, name))
@@ -91,6 +91,15 @@ def format_proposal(proposal: Proposal, width: int | None = None, *, shows_tried
         yield f"  Without another trigger, the best is: {kept.words}. {_describe_result(proposal, kept)}"
         yield "  `--propose settings` proposes that."
     yield from (f"  {line}" for line in _list_demands(best))
+
+
+def _say_that_none_is_late(proposal: Proposal) -> str:
+    if proposal.unjudged:
+        count = len(proposal.deadlines)
+        others = {0: "no other has a deadline", 1: "the other one is met"}.get(count, f"the other {count} are met")
+        names = join_words(proposal.unjudged)
+        return f"Nothing can be proposed for {names}: figures are missing, which `archgen timing` names; {others}."
+    return "Each chain with a deadline is met." if proposal.deadlines else "No chain has a deadline."
 
 
 def _tried_rows(proposal: Proposal) -> Iterator[TextRow]:

@@ -13,7 +13,13 @@ from archgen.diagnostics.common_wording import join_words
 from archgen.frozen import NamedTuple
 from archgen.timing.analysis import Analysis, ChainResult, ChainTerm
 from archgen.timing.chains.chain_verdicts import find_lateness
-from archgen.timing.chains.unfound_bounds import describe_unfound_places, find_overloaded_hosts, find_unfound_places
+from archgen.timing.chains.unfound_bounds import (
+    describe_overload,
+    describe_unfound_places,
+    find_overloaded_hosts,
+    find_saturated_links,
+    find_unfound_places,
+)
 from archgen.timing.figures import figure_wording
 from archgen.timing.figures.timing_values import TimingValue
 from archgen.timing.figures.value_arithmetic import (
@@ -87,9 +93,9 @@ def describe_lateness(analysis: Analysis, result: ChainResult, deadline: Fractio
     if late and late.kind in {"at least", "seen"}:
         run_words = f"In a simulated run it took {excess}; {_describe_most(analysis, result)}."
         return f"It takes at least {excess}." if late.kind == "at least" else run_words
-    hosts = find_overloaded_hosts(analysis, result.terms)
-    if hosts:
-        return f"It may take any time, whatever its deadline: more is to be done on {join_words(hosts)} than can be."
+    overload = describe_overload(analysis, result.terms)
+    if overload:
+        return f"It may take any time, whatever its deadline: {overload}."
     if is_boundless(result.bound):
         return f"It may take any time, and so longer than {deadline_text} allows."
     if result.verdict == "open":
@@ -166,6 +172,10 @@ def _suggest_for_cause(analysis: Analysis, result: ChainResult) -> str:
         )[:_NAMED_LOADS]
         needed = join_words([f"{name} ({figure_wording.format_share(share)} of a core)" for share, name in shares])
         return f"Take work off {hosts[0]}, where {needed} need{'s' if len(shares) == 1 else ''} most."
+    links = find_saturated_links(result.terms)
+    if links:
+        topic = max(analysis.links[links[0]].topic_traffic, key=lambda pair: pair[1].value or 0)[0]
+        return f"Send less over {links[0]}, most of which is {topic}: less often, or less at once (compressed, for instance)."
     if result.bound.missing and not result.bound.complete:
         return _suggest_measuring(analysis, result)
     if any(text.startswith(NO_USE_NOTE) and REPLACED_WORDS in text for text in result.bound.assumptions):

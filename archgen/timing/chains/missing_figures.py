@@ -7,7 +7,12 @@ from collections.abc import Iterable
 from archgen.diagnostics.common_wording import join_first, join_words
 from archgen.timing.analysis import Analysis, ChainResult
 from archgen.timing.chains.chain_bounds import JudgedChain
-from archgen.timing.chains.unfound_bounds import describe_unfound_places, find_overloaded_hosts, find_unfound_places
+from archgen.timing.chains.unfound_bounds import (
+    describe_unfound_places,
+    find_overloaded_hosts,
+    find_saturated_links,
+    find_unfound_places,
+)
 from archgen.timing.figures.timing_values import TimingValue
 from archgen.timing.figures.value_arithmetic import NO_MATCH_NOTE, NO_USE_NOTE, UNLINKED_NOTE
 from archgen.timing.system.core_placement import is_missing_cores
@@ -19,9 +24,9 @@ _HOST_SEPARATOR = " - "
 
 def describe_gaps(result: ChainResult, analysis: Analysis) -> str:
     """Return what a chain's bound lacks: `no bound: execution time of x, y unknown`; empty where it lacks nothing."""
-    overloaded_hosts = find_overloaded_hosts(analysis, result.terms)
-    if overloaded_hosts:
-        return f"{join_words(overloaded_hosts)} {'is' if len(overloaded_hosts) == 1 else 'are'} overloaded"
+    overloaded = [*find_overloaded_hosts(analysis, result.terms), *find_saturated_links(result.terms)]
+    if overloaded:
+        return f"{join_words(overloaded)} {'is' if len(overloaded) == 1 else 'are'} overloaded"
     if result.bound.complete:
         return ""
     phrases = list_missing_figures(result, analysis)

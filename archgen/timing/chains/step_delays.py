@@ -18,7 +18,9 @@ from archgen.timing.figures import figure_wording
 from archgen.timing.figures.timing_values import UNKNOWN_VALUE, ZERO_VALUE, TimingValue
 from archgen.timing.figures.value_arithmetic import (
     NO_USE_NOTE,
+    SATURATED_NOTE,
     UNBOUNDED_VALUE,
+    is_boundless,
     is_known_bound,
     name_missing_element,
     sum_bounds,
@@ -185,7 +187,13 @@ class StepDelays:
         return arc.output not in self.analysis.system.activities[arc.source].max_gaps
 
     def link_latency(self, arc: Arc, *, worst: bool = True) -> TimingValue:
-        """Return a link's largest (or smallest) latency, as it is written; its own queueing is not added."""
+        """Return a link's largest (or smallest) latency, as it is written; its own queueing is not added.
+
+        Where more is sent than the link carries, nothing that is written can be kept.
+        """
+        load = self.analysis.links.get(arc.link or "")
+        if worst and load is not None and is_boundless(load.queueing):
+            return replace(UNBOUNDED_VALUE, assumptions=("unbounded", f"{SATURATED_NOTE}: {arc.link}"))
         ticks = arc.worst if worst else arc.best
         if ticks is None:
             return TimingValue(None, complete=False, missing=self.arrivals.missing_link_names(arc))

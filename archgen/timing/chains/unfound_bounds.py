@@ -10,7 +10,7 @@ from archgen.timing.analysis import Analysis, ChainTerm
 from archgen.timing.chains.trigger_arrivals import TriggerArrivals
 from archgen.timing.figures import figure_wording
 from archgen.timing.figures.timing_values import ResponseTier, TimingValue
-from archgen.timing.figures.value_arithmetic import is_boundless, is_unfound
+from archgen.timing.figures.value_arithmetic import SATURATED_NOTE, is_boundless, is_unfound
 
 _TIER_PHRASES: Mapping[ResponseTier, str] = {
     "dedicated": "each on a core of its own",
@@ -100,3 +100,17 @@ def find_overloaded_hosts(analysis: Analysis, terms: Iterable[ChainTerm]) -> tup
     return tuple(
         dict.fromkeys(host for host in hosts if host is not None and analysis.hosts[host].verdict == "overload")
     )
+
+
+def find_saturated_links(terms: Iterable[ChainTerm]) -> tuple[str, ...]:
+    """Return the links of a chain over which more is sent than they carry."""
+    notes = dict.fromkeys(note for term in terms for note in term.link.assumptions)
+    return tuple(note.removeprefix(f"{SATURATED_NOTE}: ") for note in notes if note.startswith(SATURATED_NOTE))
+
+
+def describe_overload(analysis: Analysis, terms: Iterable[ChainTerm], quote: str = "") -> str:
+    """Say what of a chain has more to do or to carry than it can: `more is to be done on pc than can be`; empty for nothing."""
+    term_list = tuple(terms)
+    places = (("done on", find_overloaded_hosts(analysis, term_list)), ("sent over", find_saturated_links(term_list)))
+    phrases = [f"{verb} {join_words([f'{quote}{name}{quote}' for name in names])}" for verb, names in places if names]
+    return f"more is to be {join_words(phrases)} than can be" if phrases else ""

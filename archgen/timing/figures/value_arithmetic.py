@@ -20,9 +20,11 @@ NO_MATCH_NOTE = "no sure match"
 """What the note begins with of what is not bounded because inputs are matched by time and nothing promises a match."""
 NO_USE_NOTE = "no sure use"
 """What the note begins with of what is not bounded because each message may be among those that are forgotten."""
+SATURATED_NOTE = "saturated link"
+"""What the note begins with of what has no bound because more is sent over a link than it carries; its name follows."""
 REPLACED_WORDS = "may take the place of"
 """What such a note says of the messages of several sources in one memory."""
-_CAUSE_WORDS = (*BOUNDLESS_WORDS, "diverged", UNLINKED_NOTE, NO_MATCH_NOTE, NO_USE_NOTE)
+_CAUSE_WORDS = (*BOUNDLESS_WORDS, "diverged", UNLINKED_NOTE, NO_MATCH_NOTE, NO_USE_NOTE, SATURATED_NOTE)
 
 
 def unknown_value(*missing: str) -> TimingValue:

@@ -58,6 +58,8 @@ class Proposal:
     tried: tuple[TriedConfiguration, ...]
     is_cut: bool = False
     """Whether more could have been tried."""
+    unjudged: tuple[str, ...] = ()
+    """Chains that have a deadline, and lack figures."""
 
     @property
     def best(self) -> TriedConfiguration:
@@ -100,6 +102,9 @@ class _ProposalSearch:
         self.deadlines = {
             chain.id: chain.deadline.value for chain in judged if chain.deadline and chain.deadline.value is not None
         }
+        self.unjudged = tuple(
+            chain.id for chain in chains.values() if chain.deadline and chain.id not in self.deadlines
+        )
         self.keeps_triggers = keep_triggers
         self.hopeless: dict[str, Fraction] = {}
         self.tried: dict[Changes, tuple[TriedConfiguration, RunConfiguration]] = {}
@@ -116,7 +121,8 @@ class _ProposalSearch:
                 self._climb(self.space.list_smaller)
             except TriesSpentError:
                 self.is_cut = True
-        return Proposal(self.deadlines, self.hopeless, tuple(each for each, _ in self.tried.values()), self.is_cut)
+        tried = tuple(each for each, _ in self.tried.values())
+        return Proposal(self.deadlines, self.hopeless, tried, self.is_cut, self.unjudged)
 
     def _search(self) -> None:
         if self._try_orders():

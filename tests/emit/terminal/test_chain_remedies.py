@@ -98,3 +98,12 @@ def test_all_that_was_tried_is_a_table_and_the_best_is_marked() -> None:
     assert missing == (
         "No bound in any of them: a. `archgen timing` says which figures are missing, or what has more work than it can do."
     )
+
+
+def test_where_none_is_late_what_lacks_figures_is_named() -> None:
+    met = _propose([{"a": 90, "b": 80}])
+    assert list(chain_remedies.format_proposal(met)) == ["Each chain with a deadline is met."]
+    (line,) = chain_remedies.format_proposal(replace(met, unjudged=("c", "d")))
+    assert line == (
+        "Nothing can be proposed for c and d: figures are missing, which `archgen timing` names; the other 2 are met."
+    )

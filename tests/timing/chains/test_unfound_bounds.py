@@ -5,12 +5,16 @@ from __future__ import annotations
 import pytest
 
 from archgen.timing.chains.chain_bounds import bound_all_chains
+from archgen.timing.chains.missing_figures import describe_gaps
 from archgen.timing.chains.unfound_bounds import (
+    describe_overload,
     describe_unfound_places,
     find_overloaded_hosts,
+    find_saturated_links,
     find_unfound_places,
     group_by_host,
 )
+from archgen.timing.run_analysis import analyse_architecture
 from tests.timing.sketches import analyse_sketch, read_sketch
 
 # Each of the three fires the next on one core, and may start a little late: so none is part of a run, and the jitter of
@@ -54,3 +58,20 @@ def test_without_a_host_the_elements_are_named() -> None:
     analysis = analyse_sketch({"a": "period: 10 ms, wcet: 1 ms", "b": "wcet: 1 ms"}, "a>b")
     (place,) = group_by_host(analysis, ("a", "b"))
     assert describe_unfound_places((place,)) == "for a, b (each on a core of its own)"
+
+
+@pytest.mark.parametrize("latency", ["", ", latency: 2 ms"])
+def test_a_link_that_carries_less_than_is_sent_keeps_no_latency(latency: str) -> None:
+    nodes = {"a @p": "period: 10 ms, wcet: 1 ms", "b @q": "response: 2 ms"}
+    rest = (
+        "hosts: {p: {cores: 1}, q: {cores: 1}}\n"
+        f"links: {{lan: {{connects: [p, q], bandwidth: 800 kbit/s{latency}}}}}\n"
+        "chains: {way: {through: [a, b], deadline: 1 s}}"
+    )
+    model = read_sketch(nodes, "a>b", rest)
+    analysis = analyse_architecture(model)
+    (chain,) = bound_all_chains(analysis, model).values()
+    assert (chain.bound.value, chain.verdict) == (None, "missed")
+    assert find_saturated_links(chain.terms) == ("lan",)
+    assert describe_gaps(chain, analysis) == "lan is overloaded"
+    assert describe_overload(analysis, chain.terms) == "more is to be sent over lan than can be"
