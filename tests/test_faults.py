@@ -2,7 +2,7 @@
 
 The disk is full or read-only from some step on, or in the midst of a write; the process is killed; files change, vanish or
 become something else in the moment in which they are read; two runs write into one place. `make test` tries a few steps of
-each verb, drawn by its name, and the slow tests more of all (`ARCHGEN_FAULT_STEPS=1000` tries each).
+each verb, drawn by its name, the slow tests more (`ARCHGEN_FAULT_STEPS=1000` tries each step).
 """
 
 from __future__ import annotations
@@ -226,11 +226,15 @@ def stage(request: pytest.FixtureRequest, faulty: FaultyArchgen, tmp_path: Path)
     return Stage(faulty, case, tmp_path, done, list_files(found), first.list_files())
 
 
-def cases(*left_out: str) -> Callable[[Callable[..., None]], Callable[..., None]]:
-    """Give a test each case: a few steps of it, and all of them in slow tests."""
+def cases(first: int, *left_out: str) -> Callable[[Callable[..., None]], Callable[..., None]]:
+    """Give a test a step of a few cases, and more steps in slow tests, which try each case with one fault of three.
+
+    `make properties` tries each with all.
+    """
     few = [pytest.param(name, 1, id=name) for name in QUICK]
     marks = (pytest.mark.slow, pytest.mark.hypothesis)
-    many = [pytest.param(name, STEPS, id=f"{name}: more", marks=marks) for name in CASES]
+    names = list(CASES) if DRAWS_ANEW else list(CASES)[first::3]
+    many = [pytest.param(name, STEPS, id=f"{name}: more", marks=marks) for name in names]
     wanted = [each for each in (*few, *many) if each.values[0] not in left_out]
     return pytest.mark.parametrize(("stage", "count"), wanted, indirect=["stage"])
 
@@ -257,7 +261,7 @@ def find_half_files(stage: Stage) -> list[str]:
     ]
 
 
-@cases()
+@cases(0)
 def test_a_disk_that_takes_no_more_leaves_files_old_or_new(stage: Stage, count: int) -> None:
     sizes = sorted({len(data) - 1 for name, data in stage.after.items() if data and stage.before.get(name) != data})
     faults = [
@@ -279,7 +283,7 @@ def test_a_disk_that_takes_no_more_leaves_files_old_or_new(stage: Stage, count: 
             stage.check_next_run()
 
 
-@cases()
+@cases(1)
 def test_a_run_that_is_ended_anywhere_is_no_obstacle(stage: Stage, count: int) -> None:
     for kind in SIGNALS:
         for step in draw_steps(stage, kind, stage.done.writing_steps, count):
@@ -294,7 +298,7 @@ def test_a_run_that_is_ended_anywhere_is_no_obstacle(stage: Stage, count: int) -
             stage.check_next_run()
 
 
-@cases("init", "merge-driver")
+@cases(2, "init", "merge-driver")
 def test_files_that_change_while_they_are_read_are_told_of(stage: Stage, count: int) -> None:
     for kind in READING_KINDS:
         for step in draw_steps(stage, kind, stage.done.reading_steps, count):

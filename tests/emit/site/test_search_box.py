@@ -15,7 +15,6 @@ from archgen.views import shapes
 from archgen.views.search.search_entry import SearchEntry
 from tests.browser_pages import OpenPage, expect, judge_with_axe, watch_pages
 from tests.emit.site.conftest import write_bare_site
-from tests.property_sizes import mark_further_samples
 from tests.running import RAMCIP
 
 if TYPE_CHECKING:
@@ -255,9 +254,8 @@ def test_it_works_where_nothing_can_be_remembered_or_trusted(visit: OpenPage, sc
     assert titles(page)[0] == "Navigator"
 
 
-@pytest.mark.parametrize("scheme", mark_further_samples(["dark", "light"]))
-@pytest.mark.parametrize("width", mark_further_samples([360, 1280]))
-def test_axe_finds_nothing_in_the_box(visit: OpenPage, scheme: str, width: int) -> None:
+@pytest.mark.parametrize(("width", "scheme"), [(360, "dark"), (1280, "light")])
+def test_axe_finds_nothing_in_the_box(visit: OpenPage, width: int, scheme: str) -> None:
     page = visit("components/robot_action_planner.navigator.html", width=width, scheme=scheme)
     page.keyboard.press("/")
     expect(page.locator(".find-box .heading").last).to_have_text("Also understood")
