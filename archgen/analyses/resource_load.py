@@ -8,10 +8,12 @@ from fractions import Fraction
 from archgen.diagnostics import NO_SPAN, Diagnostic, Label, Severity
 from archgen.diagnostics.rule_options import RuleOption, format_percentage
 from archgen.model.architecture import Architecture
+from archgen.model.deployment import Link
 from archgen.timing.analysis import Analysis, HostLoad
-from archgen.timing.figures.figure_wording import format_number
+from archgen.timing.figures.figure_wording import format_duration, format_number
 from archgen.timing.figures.value_arithmetic import add_values
 from archgen.timing.load.host_loads import activity_share
+from archgen.timing.load.link_queueing import find_longest_sending
 from archgen.timing.system.thread_pools import find_unplaced_pools
 
 
@@ -143,9 +145,10 @@ def _format_cores(count: int) -> str:
 
 
 def saturated_link(architecture: Architecture, analysis: Analysis, *, limit: Fraction) -> Iterator[Diagnostic]:
-    """What is sent over a link is more than its bandwidth carries."""
+    """What is sent over a link is more than its bandwidth carries, at all or within the latency that is written."""
     for name, load in analysis.links.items():
         if load.share.value is None or load.share.value < limit:
+            yield from _find_broken_latency(architecture.links[name], analysis)
             continue
         topic = max(load.topic_traffic, key=lambda part: part[1].value or 0)[0]
         yield Diagnostic(
@@ -156,6 +159,21 @@ def saturated_link(architecture: Architecture, analysis: Analysis, *, limit: Fra
             help="send less often or less at once (compressed, for instance), or run writer and reader on one host",
             element=name,
         )
+
+
+def _find_broken_latency(link: Link, analysis: Analysis) -> Iterator[Diagnostic]:
+    longest = find_longest_sending(analysis.system, link.id)
+    if longest is None or link.worst is None or longest[0] <= link.worst.value:
+        return
+    duration, topic = longest
+    shown_duration, written = format_duration(duration), format_duration(link.worst.value)
+    yield Diagnostic(
+        "saturated-link",
+        f"`{link.id}` takes {shown_duration} for a message of `{topic}` by its bandwidth, longer than its latency of {written}",
+        link.at,
+        help="write the latency that the largest message has, with what waits before it, or send less at once",
+        element=link.id,
+    )
 
 
 RULES = (

@@ -25,6 +25,7 @@ from archgen.timing.figures.value_arithmetic import (
     name_missing_element,
     sum_bounds,
 )
+from archgen.timing.load.link_queueing import find_longest_sending
 from archgen.timing.system.thread_pools import is_reentrant
 from archgen.timing.system.timing_system import Activity, Arc, is_sampled, is_selective_arc
 
@@ -209,6 +210,8 @@ class StepDelays:
             return replace(value, assumptions=(f"link {arc.link} takes no longer than its bandwidth lets it",))
         load = self.analysis.links.get(arc.link or "")
         queueing = load.queueing.value if load and worst else None
+        if queueing is None and load and worst and arc.link:  # of some messages the size is unknown
+            queueing, _ = find_longest_sending(self.analysis.system, arc.link) or (None, "")
         if not queueing:
             return value
         queueing_text = figure_wording.format_duration(queueing)
