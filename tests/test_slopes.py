@@ -16,6 +16,7 @@ import pytest
 from click.testing import CliRunner
 
 from archgen.cli import main
+from tests.property_sizes import mark_slow_samples
 
 _BENCHMARK = import_module("benchmarks.generate")
 _STEEPEST = 1.3
@@ -96,8 +97,10 @@ def make_projects(dimension: str, folder: Path) -> list[Path]:
     return projects
 
 
-@pytest.mark.slow
-@pytest.mark.parametrize("dimension", ["components", "variants", "partners", "chains", "requirements", "instances"])
+_DIMENSIONS = ("components", "variants", "partners", "chains", "requirements", "instances")
+
+
+@pytest.mark.parametrize("dimension", mark_slow_samples(_DIMENSIONS, 2))
 def test_no_verb_calls_anything_more_than_n_log_n_times(dimension: str, tmp_path: Path) -> None:
     projects = make_projects(dimension, tmp_path)
     steep = []
