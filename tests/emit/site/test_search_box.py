@@ -178,12 +178,12 @@ def test_keys_lead_to_a_page_and_escape_gives_the_focus_back(visit: OpenPage) ->
     page.get_by_role("link", name="Overview").first.focus()
     search(page, "skeleton")
     field = page.get_by_role("combobox")
-    assert field.get_attribute("aria-activedescendant") == "find-0"
+    expect(field).to_have_attribute("aria-activedescendant", "find-0")
     page.keyboard.press("ArrowDown")
-    assert field.get_attribute("aria-activedescendant") == "find-1"
+    expect(field).to_have_attribute("aria-activedescendant", "find-1")
     page.keyboard.press("ArrowUp")
     page.keyboard.press("ArrowUp")
-    assert field.get_attribute("aria-activedescendant") == f"find-{len(titles(page)) - 1}"
+    expect(field).to_have_attribute("aria-activedescendant", f"find-{len(titles(page)) - 1}")
     assert page.locator("[aria-selected=true]").count() == 1
     page.keyboard.press("Escape")
     assert page.evaluate("document.activeElement.textContent") == "Overview"
