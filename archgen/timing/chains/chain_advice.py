@@ -65,9 +65,10 @@ def advise_on_chain(analysis: Analysis, result: ChainResult) -> ChainAdvice | No
 
 
 def find_deciding_term(result: ChainResult) -> ChainTerm:
-    """Return the step of a chain to begin with: the first with a figure that is missing, else the one that takes most."""
+    """Return the step to begin with: the first that may take any time, or lacks a figure, else the one that takes most."""
+    boundless = (term for term in result.terms if is_boundless(term.link) or is_boundless(term.response))
     missing = (term for term in result.terms if term.activity in result.bound.missing)
-    return next(missing, None) or max(result.terms, key=sum_known_parts)
+    return next(boundless, None) or next(missing, None) or max(result.terms, key=sum_known_parts)
 
 
 def sum_known_parts(term: ChainTerm) -> Fraction:

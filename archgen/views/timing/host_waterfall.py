@@ -34,18 +34,18 @@ _SLACK_TICKS = (0, 25, 50, 75, 100, 150)
 
 
 def make_slack_waterfall(lookup: Lookup, timing_lookup: TimingLookup) -> Waterfall | None:
-    """Show how much of its deadline each chain uses; None where no chain has a deadline and a known time."""
-    results = [
-        (result, share)
+    """Show how much of its deadline each chain uses; None where no chain has a deadline."""
+    shares = [
+        (result, chain_status.used_share(result))
         for result in chain_status.rank_chains(timing_lookup.chains)
-        if result.id in lookup.architecture.chains and (share := chain_status.used_share(result)) is not None
+        if result.id in lookup.architecture.chains and result.terms and result.deadline and result.deadline.value
     ]
-    if not results:
+    if not shares:
         return None
-    scale = min(_MAX_SCALE, max(Fraction(1), *(share for _, share in results)))
+    scale = min(_MAX_SCALE, max(Fraction(1), *(share or Fraction(0) for _, share in shares)))
     ticks = tuple((float(Fraction(tick, 100) / scale), f"{tick} %") for tick in _SLACK_TICKS if tick <= scale * 100)
-    steps = tuple(_make_step(lookup, result, share, scale) for result, share in results)
-    is_cut = any(share > scale for _, share in results)
+    steps = tuple(_make_step(lookup, result, share, scale) for result, share in shares)
+    is_cut = any(share is not None and share > scale for _, share in shares)
     return Waterfall(
         (),
         (),
@@ -61,15 +61,14 @@ def make_slack_waterfall(lookup: Lookup, timing_lookup: TimingLookup) -> Waterfa
     )
 
 
-def _make_step(lookup: Lookup, result: ChainResult, share: Fraction, scale: Fraction) -> WaterfallStep:
+def _make_step(lookup: Lookup, result: ChainResult, share: Fraction | None, scale: Fraction) -> WaterfallStep:
     title = Text(lookup.architecture.chains[result.id].title, ref=f"chain:{result.id}")
-    words = (
-        f"{value_format.display_duration(result.bound)} of {value_format.display_duration(result.deadline)}"
-        if result.deadline
-        else ""
-    )
-    percent = f"{value_format.display_number(share * 100, 1)} %"
-    words = f"{'' if result.bound.complete else '>= '}{percent} · {words}"
+    bound = value_format.display_duration(result.bound)
+    deadline = value_format.display_duration(result.deadline) if result.deadline else ""
+    words = f"{bound}; deadline {deadline}"
+    if share is not None:
+        percent = f"{value_format.display_number(share * 100, 1)} %"
+        words = f"{'' if result.bound.complete else '>= '}{percent} · {bound} of {deadline}"
     return WaterfallStep(title, chain_status.chain_chip(result), tuple(_make_slack_pieces(result, scale)), words)
 
 
@@ -82,7 +81,7 @@ def _make_slack_pieces(result: ChainResult, scale: Fraction) -> Iterator[Waterfa
         if position < scale:
             yield WaterfallPiece(kind, float(position / scale), float(min(end, scale) / scale), words, end > scale)
         position = end
-    if not result.bound.complete and position < 1:
+    if (result.bound.value is None or not result.bound.complete) and position < 1:
         yield WaterfallPiece("unknown", float(position / scale), float(1 / scale), "unknown")
 
 

@@ -86,3 +86,15 @@ def test_chains_stand_on_one_scale_the_worst_first_and_without_a_deadline_nowher
     assert late.pieces[-1].is_cut
     assert calm.pieces[-1].end < 0.1
     assert waterfall.remark == "What takes more than 200 % of its deadline is drawn short."
+
+
+def test_a_chain_without_a_bound_is_not_left_out(tmp_path: Path) -> None:
+    lookup = look_up(tmp_path, wcet=", wcet: 1 s")
+    assert lookup.timing is not None
+    waterfall = make_slack_waterfall(lookup, lookup.timing)
+    assert waterfall is not None
+    assert [(step.title.text, step.words) for step in waterfall.steps] == [
+        ("Late", "no bound: the host is overloaded; deadline 50 ms"),
+        ("Calm", "no bound: the host is overloaded; deadline 10 s"),
+    ]
+    assert all(step.pieces[-1].kind == "unknown" for step in waterfall.steps if step.title.text == "Calm")
