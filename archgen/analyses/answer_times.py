@@ -294,19 +294,22 @@ def _label_largest_part(architecture: Architecture, analysis: Analysis, late_cha
     Where a host has too much to do, or leaves no bound to find, the label is at the host: the figures of the elements
     that happen to run there may all be innocent.
     """
-    from archgen.timing.chains.unfound_bounds import find_overloaded_hosts, find_saturated_links, find_unfound_places
+    from archgen.timing.chains.unfound_bounds import find_overloaded_places, find_saturated_links, find_unfound_places
 
     for link_id in find_saturated_links(late_chain.terms):
         return Label(architecture.links[link_id].at, "more is sent over it than it carries")
-    for host_id in find_overloaded_hosts(analysis, late_chain.terms):
-        boundless_ids = [
-            f"`{term.activity}`"
-            for term in late_chain.terms
-            if is_boundless(term.response) and analysis.system.activities[term.activity].host == host_id
+    for overloaded in find_overloaded_places(analysis, late_chain.terms):
+        needing = [
+            analysis.system.activities[term.activity] for term in late_chain.terms if is_boundless(term.response)
         ]
-        verb = "runs" if len(boundless_ids) == 1 else "run"
-        text = f"has more to do than it can, and {join_words(boundless_ids)} {verb} here"
-        return Label(architecture.hosts[host_id].at, text)
+        running = [f"`{activity.id}`" for activity in needing if overloaded in (activity.host, *activity.uses)]
+        verb, here = ("run", "here") if overloaded in analysis.hosts else ("need", "it")
+        element = architecture.hosts.get(overloaded) or architecture.resources.get(overloaded)
+        span = element.at if element else needing[0].at
+        return Label(
+            span,
+            f"has more to do than it can, and {join_words(running)} {verb}{'s' if len(running) == 1 else ''} {here}",
+        )
     for place in find_unfound_places(analysis, late_chain.terms):
         if place.host is not None:
             names = join_words([f"`{name}`" for name in place.activities])

@@ -16,7 +16,7 @@ from archgen.timing.chains.chain_verdicts import find_lateness
 from archgen.timing.chains.unfound_bounds import (
     describe_overload,
     describe_unfound_places,
-    find_overloaded_hosts,
+    find_overloaded_places,
     find_saturated_links,
     find_unfound_places,
 )
@@ -165,14 +165,11 @@ def _describe_response(analysis: Analysis, name: str) -> str:
 
 def _suggest_for_cause(analysis: Analysis, result: ChainResult) -> str:
     """Say what has to go from an overloaded host, or which figure is to be measured first; empty for neither."""
-    hosts = find_overloaded_hosts(analysis, result.terms)
-    if hosts:
-        shares = sorted(
-            ((share.value, name) for name, share in analysis.hosts[hosts[0]].activity_shares if share.value),
-            key=lambda pair: -pair[0],
-        )[:_NAMED_LOADS]
-        needed = join_words([f"{name} ({figure_wording.format_share(share)} of a core)" for share, name in shares])
-        return f"Take work off {hosts[0]}, where {needed} need{'s' if len(shares) == 1 else ''} most."
+    for place, place_shares in find_overloaded_places(analysis, result.terms).items():
+        shares = sorted(((share.value, name) for name, share in place_shares if share.value), key=lambda pair: -pair[0])
+        unit = " of a core" if place in analysis.hosts else ""
+        needed = [f"{name} ({figure_wording.format_share(share)}{unit})" for share, name in shares[:_NAMED_LOADS]]
+        return f"Take work off {place}, where {join_words(needed)} need{'s' if len(needed) == 1 else ''} most."
     links = find_saturated_links(result.terms)
     if links:
         topic = max(analysis.links[links[0]].topic_traffic, key=lambda pair: pair[1].value or 0)[0]

@@ -9,7 +9,7 @@ from archgen.timing.analysis import Analysis, ChainResult
 from archgen.timing.chains.chain_bounds import JudgedChain
 from archgen.timing.chains.unfound_bounds import (
     describe_unfound_places,
-    find_overloaded_hosts,
+    find_overloaded_places,
     find_saturated_links,
     find_unfound_places,
 )
@@ -24,7 +24,7 @@ _HOST_SEPARATOR = " - "
 
 def describe_gaps(result: ChainResult, analysis: Analysis) -> str:
     """Return what a chain's bound lacks: `no bound: execution time of x, y unknown`; empty where it lacks nothing."""
-    overloaded = [*find_overloaded_hosts(analysis, result.terms), *find_saturated_links(result.terms)]
+    overloaded = [*find_overloaded_places(analysis, result.terms), *find_saturated_links(result.terms)]
     if overloaded:
         return f"{join_words(overloaded)} {'is' if len(overloaded) == 1 else 'are'} overloaded"
     if result.bound.complete:

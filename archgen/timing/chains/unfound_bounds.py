@@ -94,12 +94,18 @@ def _describe_place(place: UnfoundPlace) -> str:
     return f"{subject} ({phrases})" if phrases else subject
 
 
-def find_overloaded_hosts(analysis: Analysis, terms: Iterable[ChainTerm]) -> tuple[str, ...]:
-    """Return the hosts that have more to do than they can, and on which a step of a chain works."""
-    hosts = (analysis.system.activities[term.activity].host for term in terms if is_boundless(term.response))
-    return tuple(
-        dict.fromkeys(host for host in hosts if host is not None and analysis.hosts[host].verdict == "overload")
-    )
+def find_overloaded_places(
+    analysis: Analysis, terms: Iterable[ChainTerm]
+) -> dict[str, tuple[tuple[str, TimingValue], ...]]:
+    """Return the hosts and resources that have more to do than they can, and that a step of a chain needs.
+
+    With each the share of a core, or of the resource, that each activity takes.
+    """
+    activities = [analysis.system.activities[term.activity] for term in terms if is_boundless(term.response)]
+    hosts = {activity.host: analysis.hosts[activity.host] for activity in activities if activity.host is not None}
+    resources = {name: analysis.resources[name] for activity in activities for name in activity.uses}
+    shares = {host: load.activity_shares for host, load in hosts.items() if load.verdict == "overload"}
+    return shares | {name: load.shares for name, load in resources.items() if load.verdict == "overload"}
 
 
 def find_saturated_links(terms: Iterable[ChainTerm]) -> tuple[str, ...]:
@@ -111,6 +117,9 @@ def find_saturated_links(terms: Iterable[ChainTerm]) -> tuple[str, ...]:
 def describe_overload(analysis: Analysis, terms: Iterable[ChainTerm], quote: str = "") -> str:
     """Say what of a chain has more to do or to carry than it can: `more is to be done on pc than can be`; empty for nothing."""
     term_list = tuple(terms)
-    places = (("done on", find_overloaded_hosts(analysis, term_list)), ("sent over", find_saturated_links(term_list)))
+    places = (
+        ("done on", tuple(find_overloaded_places(analysis, term_list))),
+        ("sent over", find_saturated_links(term_list)),
+    )
     phrases = [f"{verb} {join_words([f'{quote}{name}{quote}' for name in names])}" for verb, names in places if names]
     return f"more is to be {join_words(phrases)} than can be" if phrases else ""

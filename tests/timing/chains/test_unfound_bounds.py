@@ -9,7 +9,7 @@ from archgen.timing.chains.missing_figures import describe_gaps
 from archgen.timing.chains.unfound_bounds import (
     describe_overload,
     describe_unfound_places,
-    find_overloaded_hosts,
+    find_overloaded_places,
     find_saturated_links,
     find_unfound_places,
     group_by_host,
@@ -51,7 +51,7 @@ def test_the_host_where_it_begins_is_named(
     analysis = analyse_sketch(*sketch)
     terms = bound_all_chains(analysis, read_sketch(*sketch))["c"].terms
     assert describe_unfound_places(find_unfound_places(analysis, terms)) == places
-    assert find_overloaded_hosts(analysis, terms) == overloaded
+    assert tuple(find_overloaded_places(analysis, terms)) == overloaded
 
 
 def test_without_a_host_the_elements_are_named() -> None:
@@ -75,3 +75,13 @@ def test_a_link_that_carries_less_than_is_sent_keeps_no_latency(latency: str) ->
     assert find_saturated_links(chain.terms) == ("lan",)
     assert describe_gaps(chain, analysis) == "lan is overloaded"
     assert describe_overload(analysis, chain.terms) == "more is to be sent over lan than can be"
+
+
+def test_an_overloaded_resource_is_named() -> None:
+    nodes = {"a @pc": "period: 30 ms, wcet: 1 ms, uses: {gpu: 20 ms}", "b @pc": "period: 30 ms, uses: {gpu: 11 ms}"}
+    rest = "hosts: {pc: {cores: 2}}\nresources: {gpu: {host: pc, scheduling: fifo}}\nchains: {way: {through: [a], deadline: 1 s}}"
+    model = read_sketch(nodes, "", rest)
+    analysis = analyse_architecture(model)
+    (chain,) = bound_all_chains(analysis, model).values()
+    assert [name for name, _ in find_overloaded_places(analysis, chain.terms)["gpu"]] == ["a", "b"]
+    assert describe_overload(analysis, chain.terms, "`") == "more is to be done on `gpu` than can be"
