@@ -60,7 +60,9 @@ SEEN = "makes the chain `react` miss its deadline of 250 ms"
 RATE = ("rate: 10 Hz", "rate: 4 Hz")
 ALL = "`eye` of CERTH, `mind` of SSSA and `feet` of TUM are on it"
 EVERYBODY = ("certh", "sssa", "tum")
-SHORT_CUT = BASE.replace("inputs: {tracks: tracker.tracks}", "inputs: {tracks: tracker.tracks, image: camera.image}")
+SHORT_CUT = BASE.replace(
+    "inputs: {tracks: tracker.tracks}", "inputs: {tracks: tracker.tracks, image: camera.image}"
+).replace("10 Mbit/s", "1 Gbit/s")
 
 
 def both(element: str, why: str, *partners: str) -> list[str]:
