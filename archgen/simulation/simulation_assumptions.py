@@ -150,7 +150,11 @@ def _uses_default_calls(system: TimingSystem, activity: Activity) -> bool:
 
 def find_simulated_contradictions(result: SimulationResult, analysis: Analysis) -> tuple[str, ...]:
     """Return sentences on what is written but cannot hold: there an observed figure may exceed its bound."""
-    return (*_rate_contradictions(analysis), *_gap_contradictions(result, analysis))
+    return (
+        *_rate_contradictions(analysis),
+        *_gap_contradictions(result, analysis),
+        *_latency_contradictions(result, analysis),
+    )
 
 
 def _rate_contradictions(analysis: Analysis) -> Iterator[str]:
@@ -170,6 +174,16 @@ def _gap_contradictions(result: SimulationResult, analysis: Analysis) -> Iterato
                 yield (
                     f"{activity_id} promises {key} every {format_duration(limit)} at least, and had no chance to for {format_duration(silence)}"
                 )
+
+
+def _latency_contradictions(result: SimulationResult, analysis: Analysis) -> Iterator[str]:
+    written = {arc.link: arc.worst * analysis.system.tick for arc in analysis.system.arcs if arc.worst is not None}
+    for name, link in result.links.items():
+        if name in written and name not in analysis.system.queued_links and link.wait > written[name]:
+            yield (
+                f"{name} has a latency of {format_duration(written[name])}, and messages waited {format_duration(link.wait)} "
+                "for it: ways over it take longer than is seen here"
+            )
 
 
 def list_selective_elements(system: TimingSystem, through: tuple[str, ...]) -> tuple[str, ...]:

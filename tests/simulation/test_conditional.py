@@ -83,3 +83,16 @@ def test_a_promised_gap_makes_a_bound_for_all_inputs(tmp_path: Path) -> None:
 def test_a_promise_that_cannot_be_kept_is_named(tmp_path: Path, more: str, said: list[str]) -> None:
     found = json.loads(told(tmp_path, more, "--format", "json"))["assumptions"]["contradictions"]
     assert [one.split(",")[0] for one in found] == said
+
+
+@pytest.mark.parametrize(("bandwidth", "is_said"), [("80 Mbit/s", False), ("7 Mbit/s", True)])
+def test_a_latency_that_a_link_cannot_keep_is_named(tmp_path: Path, bandwidth: str, is_said: bool) -> None:  # noqa: FBT001
+    nodes = "nodes: {eye: {implements: eye, host: p}, watch: {implements: watch, host: q}, hand: {implements: hand, host: q}}"
+    hosts = f"hosts: {{p: {{}}, q: {{}}}}\nlinks: {{lan: {{connects: [p, q], bandwidth: {bandwidth}, latency: 1 ms}}}}"
+    file = tmp_path / "robot.yaml"
+    text = (PROJECT % "").replace("std_msgs/msg/Empty}", "std_msgs/msg/String, size: 10 kB}")
+    file.write_text(f"{text}\n{nodes}\n{hosts}\n", encoding="utf-8")
+    found = CliRunner().invoke(main, ["simulate", str(file), "--seconds", "5", "--seeds", "1", "--format", "json"])
+    assert found.exit_code == 0, found.output
+    sentences = json.loads(found.stdout)["assumptions"]["contradictions"]
+    assert any(one.startswith("lan has a latency of 1 ms") for one in sentences) is is_said
