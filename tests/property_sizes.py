@@ -21,7 +21,7 @@ _QUICK_SHARE = 4
 """The quick profile tries one example of so many."""
 _QUICK_SEED_SHARE = 8
 """`make test` tries one seed of so many: the others are tests of their own."""
-_SEED_SHARE = 2
+_SEED_SHARE = 3
 """`make test-all` tries one seed of so many, `make properties` the others."""
 
 # The same draws in each run: a pull request must not turn red over a fault that was there before it. New draws are for those
@@ -50,7 +50,7 @@ def count_examples(full_count: int) -> int:
 
 
 def list_seeds(full_count: int) -> list[int | pytest.ParameterSet]:
-    """Return the numbers below `full_count` for a test that draws by one: an eighth for `make test`, half for `make test-all`."""
+    """Return the numbers below `full_count` for a test that draws by one: an eighth for `make test`, a third for `make test-all`."""
     quick_count = max(1, full_count // _QUICK_SEED_SHARE)
     shown_count = max(quick_count, full_count // _SEED_SHARE)
     return [*range(quick_count), *mark_slow_samples(range(quick_count, full_count), shown_count - quick_count)]
