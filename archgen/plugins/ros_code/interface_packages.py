@@ -59,6 +59,15 @@ def find_refused_messages(architecture: Architecture, ros: int) -> Collection[st
     return set(names) - set(_sort_out(architecture, names, definers, ros)[0])
 
 
+def list_unlisted_packages(architecture: Architecture, used_packages: Collection[str]) -> list[str]:
+    """Return those of some packages that the backend `ros_interfaces` makes where `generate` lists others, and not this one."""
+    listed = architecture.generate.backends
+    if not listed or "ros_interfaces" in listed:
+        return []
+    made = {name.partition("/")[0] for name in _list_generated(architecture, _find_definers(architecture))}
+    return sorted(made & {*used_packages})
+
+
 def _list_generated(architecture: Architecture, definers: Mapping[str, ConceptualType]) -> list[str]:
     existing_packages = _list_existing_packages(architecture)
     return [

@@ -149,3 +149,17 @@ def test_a_further_instance_changes_no_program(tmp_path: Path) -> None:
         if path.endswith(("_node.py", ".hpp", "_node.cpp")):
             assert "'/" not in text, path
             assert '"/' not in text, path
+
+
+@pytest.mark.parametrize(("listed", "is_told"), [("ros2_python:", True), ("ros2_python: , ros_interfaces:", False)])
+def test_messages_that_no_listed_backend_makes_are_told(tmp_path: Path, listed: str, is_told: bool) -> None:  # noqa: FBT001
+    (tmp_path / "p.yaml").write_text(
+        "archgen: 1\nproject: {id: rt, title: Robot}\nros: {distro: jazzy}\n"
+        f"generate: {{into: ws, backends: {{{listed} }}}}\n"
+        "groups: {g: {components: {a: {outputs: {out: Force}}}}}\nnodes: {a: {implements: g.a}}\n"
+        "types: {Force: {fields: {level: float64}}}\n",
+        encoding="utf-8",
+    )
+    context = GenerationContext(check_project(tmp_path / "p.yaml").architecture, options={"language": "python"})
+    words = "programs need the package `rt_msgs`, which no backend makes that `generate` lists"
+    assert [each.message for each in make_view(context).findings] == [words] * is_told

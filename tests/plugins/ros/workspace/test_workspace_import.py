@@ -775,3 +775,13 @@ def test_files_of_ros_1_are_filled_in_where_the_launch_file_says_so(
     assert done.status == 0, done.err
     assert "subscribes to /taluy/odom (nav_msgs/msg/Odometry)" in run("show", "-C", "robot", "filled").out
     assert "/odom (" not in run("show", "-C", "robot", "plain").out.replace("/odom0", "")
+
+
+@pytest.mark.usefixtures("workspace")
+def test_a_workspace_without_launch_files_says_what_to_do(run: Run) -> None:
+    for file in Path("src").rglob("*.launch*"):
+        file.unlink()
+    done = run("import", "workspace", "src", "--distro", "humble", "-o", "robot")
+    assert done.status == 1
+    assert "there is no launch file in it" in done.err
+    assert "with `--launch none` each program is taken as if something started it once" in done.err
