@@ -44,6 +44,7 @@ from archgen.views.generation.program_parts import (
     find_program_type,
     infer_ros_type,
     list_node_values,
+    place_endpoint,
     record_parameters,
     record_ports,
     record_qos,
@@ -57,5 +58,5 @@ __all__ += ["find_name_clashes", "find_node_language", "find_program_type", "fin
 __all__ += ["group_by_program", "index_endpoints", "infer_ros_type", "is_loadable", "list_generated_nodes"]
 __all__ += ["list_name_words", "list_node_values", "list_set_parameters", "make_camel_name", "make_id"]
 __all__ += ["make_identifier_in", "make_lower_camel_name", "make_ros_name", "make_snake_name", "name_endpoints"]
-__all__ += ["name_package", "name_plugin", "read_own_hints", "record_parameters", "record_ports", "record_qos"]
-__all__ += ["spell_in_ascii", "tell_left_out", "title_from_id", "to_plain", "write_place"]
+__all__ += ["name_package", "name_plugin", "place_endpoint", "read_own_hints", "record_parameters", "record_ports"]
+__all__ += ["record_qos", "spell_in_ascii", "tell_left_out", "title_from_id", "to_plain", "write_place"]
