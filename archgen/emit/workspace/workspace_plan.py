@@ -108,6 +108,25 @@ def plan_workspace(
     return planner.finish()
 
 
+def plan_clearing(
+    record: RunRecord,
+    run: str,
+    files: Iterable[GeneratedFile],
+    disk: DiskReader,
+    choices: UserChoices,
+) -> WorkspacePlan:
+    """Plan what a run takes away of what archgen wrote, before it writes anything: another backend waits for the places."""
+    wanted_files = {file.path: file for file in files}
+    planner = _Planner(record, run, disk, choices, choices.fits, wanted_files)
+    for path, entry in record.files.items():
+        stays = path in wanted_files or not choices.removes_unmade
+        if stays or not disk.read(path).has_digest(entry.digests):
+            planner.entries[path] = entry
+        else:
+            planner.plan_unwanted(path, entry)
+    return planner.finish()
+
+
 @dataclass
 class _Planner:
     """Collects the parts of a plan."""

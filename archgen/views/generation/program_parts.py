@@ -183,7 +183,8 @@ def record_envelope(architecture: Architecture, endpoints: Sequence[Endpoint]) -
     for endpoint in endpoints:
         if endpoint.use == "subscribes":
             senders[architecture.nodes[endpoint.node].full_name] = _list_senders(architecture, endpoint)
-    return {"payload": message or payload_type, "senders": senders}
+    # The longest name last: it counts where a node's name ends with several.
+    return {"payload": message or payload_type, "senders": dict(sorted(senders.items(), key=lambda each: len(each[0])))}
 
 
 def is_envelope(data_type: ConceptualType) -> bool:

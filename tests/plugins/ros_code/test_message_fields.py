@@ -159,6 +159,14 @@ ANSWERS = {
         ),
         [("9", "62")],
     ),
+    "future that is kept": (
+        (
+            "    asked = None\n\n    def start(self):\n        self.asked = self.node.call_mode(1)\n\n"
+            "    def look(self):\n        if self.asked and self.asked.done():\n"
+            "            self.ok, self.asked = self.asked.result().ok, None\n"
+        ),
+        [],
+    ),
     "function inside": (
         (
             "    def start(self):\n        def hear(done):\n            return done.result().ok\n\n"
