@@ -218,9 +218,8 @@ class _CodeReader:
             roots = self._find_roots(function)
             called = {id(each.func) for each in ast.walk(function) if isinstance(each, ast.Call)}
             for each in ast.walk(function):
-                is_field = isinstance(each, ast.Attribute) and id(each) not in called
-                traced = self._trace_fields(each, roots) if is_field and isinstance(each, ast.Attribute) else None
-                if traced and traced[1] and isinstance(each, ast.Attribute):
+                is_field = isinstance(each, ast.Attribute) and id(each) not in called and not _is_kept(each)
+                if is_field and isinstance(each, ast.Attribute) and (traced := self._trace_fields(each, roots)):
                     column = (each.end_col_offset or 0) - len(each.attr.encode()) + 1
                     yield OwnField(*traced, each.end_lineno or each.lineno, column)
                 elif isinstance(each, ast.Call) and (made := self._find_class(each.func)):
@@ -292,7 +291,7 @@ class _CodeReader:
             return self._trace_call(expression, roots)
         if isinstance(expression, ast.Await):
             return self._trace_fields(expression.value, roots)
-        if isinstance(expression, ast.Attribute) and _list_words(expression.value) == ["self"]:
+        if isinstance(expression, ast.Attribute) and _is_kept(expression):
             return self._kept.get(expression.attr)
         inner = self._trace_fields(expression.value, roots) if isinstance(expression, ast.Attribute) else None
         return (inner[0], (*inner[1], expression.attr)) if inner and isinstance(expression, ast.Attribute) else None
@@ -376,6 +375,10 @@ def _walk_own(function: ast.AST) -> Iterator[ast.AST]:
     for each in function.body:
         if not isinstance(each, _Function | ast.ClassDef):
             yield from ast.walk(each)
+
+
+def _is_kept(attribute: ast.Attribute) -> bool:
+    return isinstance(attribute.value, ast.Name) and attribute.value.id == "self"
 
 
 def _is_none(expression: ast.expr) -> bool:

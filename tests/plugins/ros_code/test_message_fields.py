@@ -163,7 +163,14 @@ ANSWERS = {
         (
             "    asked = None\n\n    def start(self):\n        self.asked = self.node.call_mode(1)\n\n"
             "    def look(self):\n        if self.asked and self.asked.done():\n"
-            "            self.ok, self.asked = self.asked.result().ok, None\n"
+            "            self.ok = self.asked.result().ok\n            self.asked = None\n"
+        ),
+        [("14", "43")],
+    ),
+    "one of two that are kept": (
+        (
+            "    def start(self, other):\n        self.asked = self.node.call_mode(1)\n"
+            "        self.asked = other.call(1)\n        return self.asked.result().ok\n"
         ),
         [],
     ),
