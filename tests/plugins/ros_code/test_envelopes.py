@@ -143,7 +143,8 @@ def take_method(workspace: Path, name: str) -> Callable[..., object]:
     return names[name]  # type: ignore[no-any-return]
 
 
-ROSPY = SimpleNamespace(get_name=lambda: ROSPY.name)
+ROSPY = SimpleNamespace(name="")
+ROSPY.get_name = lambda: ROSPY.name
 
 
 @pytest.mark.parametrize(("backend", "distro"), [("ros1_python", "noetic"), ("ros2_python", "jazzy")])
