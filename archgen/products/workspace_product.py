@@ -14,14 +14,7 @@ from archgen.emit.workspace import workspace_writing
 from archgen.emit.workspace.disk_files import DiskReader, GeneratedFile, fold_file_path
 from archgen.emit.workspace.known_fits import KnownFits
 from archgen.emit.workspace.run_record import find_former_project, read_other_records, read_run_record, take_over_runs
-from archgen.emit.workspace.workspace_plan import (
-    STALE,
-    FileStep,
-    UserChoices,
-    WorkspacePlan,
-    plan_clearing,
-    plan_workspace,
-)
+from archgen.emit.workspace.workspace_plan import STALE, FileStep, UserChoices, WorkspacePlan, plan_workspace
 from archgen.model.architecture import ProjectInfo
 from archgen.pipeline import CheckedProject
 from archgen.products.backend_choice import choose_backends, raise_problems
@@ -326,10 +319,10 @@ def _plan_files(
         _find_named_paths(request.overwritten, folder, known_paths),
         _find_named_paths(request.kept, folder, known_paths),
         request.removes_unmade,
+        request.only_clears,
         fits,
     )
-    plan_files = plan_clearing if request.only_clears else plan_workspace
-    plan = plan_files(record, run, files, DiskReader(folder, request.leaving), choices)
+    plan = plan_workspace(record, run, files, DiskReader(folder, request.leaving), choices)
     fits.keep()
     return plan
 
