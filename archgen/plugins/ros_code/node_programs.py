@@ -16,6 +16,7 @@ from archgen.plugin.generating import (
     GeneratedView,
     GenerationContext,
     ProgramNames,
+    find_endpoint_span,
     find_name_clashes,
     find_node_language,
     find_program_type,
@@ -29,7 +30,6 @@ from archgen.plugin.generating import (
     make_ros_name,
     make_snake_name,
     name_package,
-    place_endpoint,
     record_parameters,
     record_ports,
     tell_left_out,
@@ -279,7 +279,7 @@ def _tell_refused(
             yield tell_left_out(
                 f"`{each.port or each.label}` of the node `{each.node}` is left out: `ros_interfaces` generates no "
                 f"`{each.message}`, and says why",
-                place_endpoint(architecture, each),
+                find_endpoint_span(architecture, each),
                 element=each.node,
             )
 

@@ -5,12 +5,13 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable, Mapping, Sequence
 
+from archgen.analyses.topic_sources import find_endpoint_span
 from archgen.bringup.program_names import choose_own_names, find_common_message, group_endpoints, name_program
 from archgen.bringup.start_commands import has_substitution
-from archgen.diagnostics import Diagnostic, Span, first_written_span
+from archgen.diagnostics import Diagnostic
 from archgen.model.architecture import Architecture
 from archgen.model.code_names import PYTHON_KEYWORDS
-from archgen.model.component import ComponentType, Input, Output
+from archgen.model.component import ComponentType
 from archgen.model.message_types import ConceptualType, full_message_name
 from archgen.model.node import Endpoint, Node, Qos
 from archgen.model.parameter import Parameter
@@ -65,13 +66,13 @@ def _tell_unknown_message(architecture: Architecture, endpoint: Endpoint, messag
         shown = " and ".join(sorted(f"`{each}`" for each in messages if each))
         return tell_left_out(
             f"{named} is left out: nodes of one program use it with several messages, {shown or 'one of them unknown'}",
-            place_endpoint(architecture, endpoint),
+            find_endpoint_span(architecture, endpoint),
             element=endpoint.node,
             help_line="give one of the nodes an `executable` of its own",
         )
     return tell_left_out(
         f"{named} is left out: nobody says which message it has",
-        place_endpoint(architecture, endpoint),
+        find_endpoint_span(architecture, endpoint),
         element=endpoint.node,
         help_line="map its type to a message below `types`, or give the type `fields`",
     )
@@ -81,7 +82,7 @@ def _tell_bad_message(architecture: Architecture, endpoint: Endpoint) -> Diagnos
     return tell_left_out(
         f"`{endpoint.port or endpoint.label}` of the node `{endpoint.node}` is left out: no class can be called as its "
         f"message `{endpoint.message}`",
-        place_endpoint(architecture, endpoint),
+        find_endpoint_span(architecture, endpoint),
         element=endpoint.node,
         help_line="give its type another name, or another `message`",
     )
@@ -92,7 +93,9 @@ def _record_port(
 ) -> dict[str, object]:
     first = endpoints[0]
     package, kind, name = (first.message or "//").split("/")
-    port = _find_port(architecture, first)
+    port = architecture.outputs.get(first.port or "") or architecture.inputs.get(first.port or "")
+    if first.use in {"subscribes", "calls"}:
+        port = architecture.inputs.get(first.port or "") or port
     data_type = architecture.types.get(first.type or "")
     return {
         "key": key,
@@ -114,17 +117,6 @@ def _record_port(
         if shared_name and port
         else write_place(port.at if port else first.at),
     }
-
-
-def _find_port(architecture: Architecture, endpoint: Endpoint) -> Input | Output | None:
-    ports = (architecture.outputs.get(endpoint.port or ""), architecture.inputs.get(endpoint.port or ""))
-    return ports[1] or ports[0] if endpoint.use in {"subscribes", "calls"} else ports[0] or ports[1]
-
-
-def place_endpoint(architecture: Architecture, endpoint: Endpoint) -> Span:
-    """Return where an endpoint is written, else its port, else its node."""
-    port = _find_port(architecture, endpoint)
-    return first_written_span(endpoint.at, *([port.at] if port else ()), architecture.nodes[endpoint.node].at)
 
 
 def _write_meaning(architecture: Architecture, port_endpoints: Sequence[Endpoint], *, is_shared: bool) -> str:
