@@ -97,9 +97,9 @@ def unnamed_source(architecture: Architecture) -> Iterator[Diagnostic]:
             yield Diagnostic(
                 "unnamed-source",
                 f"`{reader.label}` also brings {' and '.join(outputs)}, which no input of `{reader.component}` names",
-                _endpoint_span(architecture, reader),
+                find_endpoint_span(architecture, reader),
                 labels=tuple(
-                    Label(_endpoint_span(architecture, writer), "published here") for writer in extra_writers[:3]
+                    Label(find_endpoint_span(architecture, writer), "published here") for writer in extra_writers[:3]
                 ),
                 help="name it in `from` of the input, or publish it on a topic of its own",
                 element=reader.component,
@@ -172,18 +172,18 @@ def _judge_written_topic(architecture: Architecture, topic_users: _TopicUsers, r
 def _report_unaccounted(
     architecture: Architecture, reader: Endpoint, message: str, cure: str, writers: list[Endpoint]
 ) -> Diagnostic:
-    labels = tuple(Label(_endpoint_span(architecture, w), "published here") for w in writers[:3])
+    labels = tuple(Label(find_endpoint_span(architecture, w), "published here") for w in writers[:3])
     return Diagnostic(
         "unaccounted-topic",
         message,
-        _endpoint_span(architecture, reader),
+        find_endpoint_span(architecture, reader),
         labels=labels,
         help=cure,
         element=reader.node,
     )
 
 
-def _endpoint_span(architecture: Architecture, endpoint: Endpoint) -> Span:
+def find_endpoint_span(architecture: Architecture, endpoint: Endpoint) -> Span:
     """Return the span of an endpoint, else of its port, else of its node."""
     if endpoint.at != NO_SPAN:
         return endpoint.at

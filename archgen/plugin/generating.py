@@ -1,5 +1,6 @@
 """For generators: what views are made from and give back, names in other languages, and what the views of several programs share."""
 
+from archgen.analyses.topic_sources import find_endpoint_span
 from archgen.bringup.program_names import (
     ProgramNames,
     find_node_language,
@@ -53,9 +54,16 @@ from archgen.views.records.record_sources import to_plain
 
 __all__ = ["AADL_KEYWORDS", "CPP_KEYWORDS", "NOT_GENERATED", "PORT_SECTIONS", "PYTHON_KEYWORDS", "GeneratedView"]
 __all__ += ["GenerationContext", "ProgramNames", "SetParameter", "collect_messages", "convert_ros_value"]
-__all__ += ["find_name_clashes", "find_node_language", "find_program_type", "find_text_fault", "find_type_words"]
+__all__ += [
+    "find_endpoint_span",
+    "find_name_clashes",
+    "find_node_language",
+    "find_program_type",
+    "find_text_fault",
+    "find_type_words",
+]
 __all__ += ["group_by_program", "index_endpoints", "infer_ros_type", "is_loadable", "list_generated_nodes"]
 __all__ += ["list_name_words", "list_node_values", "list_set_parameters", "make_camel_name", "make_id"]
 __all__ += ["make_identifier_in", "make_lower_camel_name", "make_ros_name", "make_snake_name", "name_endpoints"]
-__all__ += ["name_package", "name_plugin", "read_own_hints", "record_parameters", "record_ports", "record_qos"]
-__all__ += ["spell_in_ascii", "tell_left_out", "title_from_id", "to_plain", "write_place"]
+__all__ += ["name_package", "name_plugin", "read_own_hints", "record_parameters", "record_ports"]
+__all__ += ["record_qos", "spell_in_ascii", "tell_left_out", "title_from_id", "to_plain", "write_place"]

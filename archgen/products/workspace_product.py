@@ -44,6 +44,8 @@ class WorkspaceRequest:
     """What the project says of options that are not asked for otherwise."""
     leaving: Collection[str] = ()
     """Files that other backends take away before this one is made."""
+    only_clears: bool = False
+    """Whether only what is no longer made is taken away."""
     former_project: str = ""
     """The id that the project had before, or its own one where what another project has here is none of its."""
 
@@ -94,7 +96,8 @@ def write_workspace(
     files, findings = _render_files(checked_project, options, backend, request.host)
     if files is None:
         return WorkspaceResult(folder, None, findings)
-    if clashes := tuple(_find_clashes(files, backend, folder, request.leaving)):
+    clashes = () if request.only_clears else tuple(_find_clashes(files, backend, folder, request.leaving))
+    if clashes:
         return WorkspaceResult(folder, None, (*findings, *clashes), is_in_the_way=True)
     project = checked_project.architecture.project
     run = _name_run(checked_project, options, request.host)
@@ -114,8 +117,11 @@ def write_workspaces(
     requests: Mapping[str, WorkspaceRequest],
     target: Path | None = None,
 ) -> Iterator[tuple[str, WorkspaceResult]]:
-    """Write the workspaces of several backends: one waits for those whose files are in its way, and may leave."""
-    waiting, leaving, has_waited = [*requests], set[str](), set[str]()
+    """Write the workspaces of several backends: one waits for those whose files are in its way, and may leave.
+
+    Where they wait for one another, since they change places, one first takes away what it no longer makes.
+    """
+    waiting, leaving, has_waited, has_cleared = [*requests], set[str](), set[str](), set[str]()
     while waiting:
         name = waiting.pop(0)
         request = replace(requests[name], leaving=frozenset(leaving))
@@ -124,6 +130,14 @@ def write_workspaces(
             waiting.append(name)
             has_waited.add(name)
             continue
+        if result.is_in_the_way and name not in has_cleared:
+            waiting.append(name)
+            has_cleared.add(name)
+            cleared = write_workspace(checked_project, options, name, target, replace(request, only_clears=True))
+            if not (cleared.plan and cleared.plan.removals):
+                continue
+            # What could not be generated is said by the run that generates.
+            result = replace(cleared, findings=())
         leaving |= {*result.plan.removals, *result.plan.vanished} if result.plan else set()
         yield name, result
 
@@ -240,7 +254,8 @@ def _find_clashes(
             yield tell_left_out(
                 f"`{file.path}` is made by the backend `{other}` in this folder, and by `{backend.id}`",
                 NO_SPAN,
-                help_line=f"give another folder with `-o`, or remove `.archgen/{other}.json` if that one is not used here any more",
+                help_line=f"`archgen generate {other}` takes it away if it is not made there any more; else give another folder "
+                f"with `-o`, or remove `.archgen/{other}.json` if that one is not used here any more",
             )
             return
 
@@ -304,6 +319,7 @@ def _plan_files(
         _find_named_paths(request.overwritten, folder, known_paths),
         _find_named_paths(request.kept, folder, known_paths),
         request.removes_unmade,
+        request.only_clears,
         fits,
     )
     plan = plan_workspace(record, run, files, DiskReader(folder, request.leaving), choices)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import contextlib
+import sys
 
 from archgen.frozen import dataclass
 
@@ -16,7 +17,8 @@ class TemplateLimits:
     """
 
     computing: int = 20
-    waiting: float = 60.0
+    # Where computing is bound, a worker that waits is one of a busy machine, and comes to its end.
+    waiting: float = 60.0 if sys.platform == "win32" else 900.0
     memory: int = 1_000_000_000
     output: int = 64_000_000
     files: int = 20_000

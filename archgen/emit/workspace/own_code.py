@@ -213,6 +213,8 @@ class _PythonJudge:
         self._findings: list[CodeFinding] = []
         self._meanings: dict[str, str] = {}
         self._successors: set[str] = set()
+        # A name that is gone has the fields that it had: both are told, in whichever order they are mended.
+        self._known = {**recorded, **contract.names}
 
     def judge(self, helpers: Iterable[tuple[str, bytes]]) -> CodeReport:
         lost = {name for name in self._recorded if name.startswith(_SENDING) and name not in self._contract.offers}
@@ -292,14 +294,11 @@ class _PythonJudge:
             was_offered = use.name in self._recorded and use.name.startswith(_SENDING)
             if use.name in self._contract.offers or not (is_sending or was_offered):
                 continue
-            now, successor = self._describe_successor(use.name)
+            now, successor = _describe_successor(use.name, self._contract, self._recorded, ())
             any_more = " any more" if was_offered else ""
             self._tell(f"the node has no `{use.name}`{any_more}{now}", use, successor=successor)
             if was_offered:
                 self._keep(use.name)
-
-    def _describe_successor(self, name: str) -> tuple[str, str]:
-        return _describe_successor(name, self._contract, self._recorded, ())
 
     def _find_lost_uses_in_helper(self, path: str, data: bytes, lost: Collection[str]) -> None:
         """Tell what another file uses of what it calls the node, where that had it."""
@@ -312,7 +311,7 @@ class _PythonJudge:
             return  # a template, or a file of another Python: it is nobody's own class
         for use in uses:
             if use.name in lost:
-                now, successor = self._describe_successor(use.name)
+                now, successor = _describe_successor(use.name, self._contract, self._recorded, ())
                 message = f"the node of `{self._code.class_name}` has no `{use.name}` any more{now}"
                 names = (use.name, successor) if successor else ("", "")
                 self._findings.append(CodeFinding(message, use.line, use.column, False, path, *names))  # noqa: FBT003
@@ -350,10 +349,10 @@ class _PythonJudge:
     def _find_class(self, use: OwnField) -> tuple[str, tuple[str, ...]]:
         """Return the class that a chain of fields begins with, and the chain: that of an argument is what the node calls with."""
         if use.root.endswith("()"):  # what a call of the node answers with
-            service = _Meaning.read(self._contract.offers.get(use.root[:-2], "")).message
+            service = _Meaning.read(self._known.get(use.root[:-2], "")).message
             return (f"{service}/Response" if service else ""), use.chain
         method, _, number = use.root.partition("#")
-        message = _Meaning.read(self._contract.expects.get(method, "")).message
+        message = _Meaning.read(self._known.get(method, "")).message
         if not number or not message:
             return ("" if number else use.root), use.chain
         if method.startswith("serve_"):
@@ -488,7 +487,8 @@ def _find_lost_fields_in_words(
         # Of names that stand for several classes nobody knows which one it is.
         is_elsewhere = any(each.startswith(".") and each.rpartition(".")[2] == field_name for each in contract.offers)
         service = head[1:].removesuffix("/Response")
-        calls = [each for each, text in contract.offers.items() if _Meaning.read(text).message == service]
+        names = {**recorded, **contract.offers}
+        calls = [each for each, text in names.items() if _Meaning.read(text).message == service]
         found = find_field(code, field_name, head[1:].replace("/", "::"), calls)
         message, _ = _describe_lost_field(name, contract, recorded)
         if found and message and not is_elsewhere:

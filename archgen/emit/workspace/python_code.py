@@ -7,6 +7,7 @@ import hashlib
 import re
 import sys
 import warnings
+from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
 
 from archgen.frozen import dataclass
@@ -129,8 +130,12 @@ class _CodeReader:
         for _ in range(2):
             self._node_words |= set(self._find_node_words())
         self._outermost = frozenset(self._list_functions())
+        self._kept: dict[str, _Trace] = {}
         self._answers: dict[str, dict[str, str]] = {}
-        self._answers = self._find_answers()
+        # What is kept may be called back, and what is called back may be kept.
+        for _ in range(2):
+            self._kept = self._find_kept()
+            self._answers = self._find_answers()
 
     def read(self) -> PythonCode:
         methods: dict[str, OwnName] = {}
@@ -213,7 +218,7 @@ class _CodeReader:
             roots = self._find_roots(function)
             called = {id(each.func) for each in ast.walk(function) if isinstance(each, ast.Call)}
             for each in ast.walk(function):
-                is_field = isinstance(each, ast.Attribute) and id(each) not in called
+                is_field = isinstance(each, ast.Attribute) and id(each) not in called and not _is_kept(each)
                 if is_field and isinstance(each, ast.Attribute) and (traced := self._trace_fields(each, roots)):
                     column = (each.end_col_offset or 0) - len(each.attr.encode()) + 1
                     yield OwnField(*traced, each.end_lineno or each.lineno, column)
@@ -238,6 +243,26 @@ class _CodeReader:
                     is_another = target.id in roots and roots[target.id] != traced
                     roots[target.id] = traced if traced and not is_another else ("", ())
         return {name: root for name, root in roots.items() if root[0]}
+
+    def _find_kept(self) -> dict[str, _Trace]:
+        """Return what attributes stand for that are given one thing alone, and None: `self.asked = self.node.call_reset(request)`."""
+        attributes = [each for each in ast.walk(self._tree) if isinstance(each, ast.Attribute)]
+        unseen = Counter(each.attr for each in attributes if isinstance(each.ctx, ast.Store))
+        given: dict[str, set[_Trace | None]] = {}
+        for function in (each for each in self._list_functions() if isinstance(each, _Function)):
+            roots = self._find_roots(function)
+            for each in ast.walk(function):
+                targets = [each.target] if isinstance(each, ast.AnnAssign) else getattr(each, "targets", ())
+                value = each.value if isinstance(each, ast.Assign | ast.AnnAssign) else None
+                traces = (
+                    set[_Trace | None]() if value is None or _is_none(value) else {self._trace_fields(value, roots)}
+                )
+                for target in targets:
+                    if isinstance(target, ast.Attribute):
+                        unseen[target.attr] -= 1
+                        given.setdefault(target.attr, set()).update(traces)
+        single = {name: next(iter(traces)) for name, traces in given.items() if len(traces) == 1 and not unseen[name]}
+        return {name: trace for name, trace in single.items() if trace}
 
     def _find_answers(self) -> dict[str, dict[str, str]]:
         """Return by function which of its names are futures of calls: what `add_done_callback` is given is called with one."""
@@ -266,6 +291,8 @@ class _CodeReader:
             return self._trace_call(expression, roots)
         if isinstance(expression, ast.Await):
             return self._trace_fields(expression.value, roots)
+        if isinstance(expression, ast.Attribute) and _is_kept(expression):
+            return self._kept.get(expression.attr)
         inner = self._trace_fields(expression.value, roots) if isinstance(expression, ast.Attribute) else None
         return (inner[0], (*inner[1], expression.attr)) if inner and isinstance(expression, ast.Attribute) else None
 
@@ -348,6 +375,14 @@ def _walk_own(function: ast.AST) -> Iterator[ast.AST]:
     for each in function.body:
         if not isinstance(each, _Function | ast.ClassDef):
             yield from ast.walk(each)
+
+
+def _is_kept(attribute: ast.Attribute) -> bool:
+    return isinstance(attribute.value, ast.Name) and attribute.value.id == "self"
+
+
+def _is_none(expression: ast.expr) -> bool:
+    return isinstance(expression, ast.Constant) and expression.value is None
 
 
 def _list_words(expression: ast.expr | None) -> Sequence[str]:

@@ -51,6 +51,8 @@ class UserChoices:
     kept: Collection[str] = ()
     removes_unmade: bool = True
     """Whether what is no longer made goes: not in spite of errors, since it may only be missing because of one."""
+    only_clears: bool = False
+    """Whether only that goes which archgen wrote and makes no more: another backend waits for its place."""
     fits: KnownFits = field(default_factory=KnownFits)
     """Which files of the user's own fitted before."""
 
@@ -99,11 +101,12 @@ def plan_workspace(
     planner = _Planner(record, run, disk, choices, choices.fits, wanted_files)
     # First what goes: a folder may take the place of a file, and a file that of a folder.
     for path, entry in record.files.items():
-        if path not in wanted_files and choices.removes_unmade:
+        is_cleared = not choices.only_clears or disk.read(path).has_digest(entry.digests)
+        if path not in wanted_files and choices.removes_unmade and is_cleared:
             planner.plan_unwanted(path, entry)
-        elif path not in wanted_files:
+        elif path not in wanted_files or choices.only_clears:
             planner.entries[path] = entry
-    for file in wanted_files.values():
+    for file in () if choices.only_clears else wanted_files.values():
         planner.plan_wanted(file)
     return planner.finish()
 

@@ -17,6 +17,7 @@ from archgen.plugin.generating import (
     GeneratedView,
     GenerationContext,
     ProgramNames,
+    find_endpoint_span,
     find_name_clashes,
     find_node_language,
     find_program_type,
@@ -33,6 +34,7 @@ from archgen.plugin.generating import (
     record_parameters,
     record_ports,
     tell_left_out,
+    title_from_id,
     write_place,
 )
 from archgen.plugin.model import Architecture, Endpoint, Node
@@ -76,7 +78,7 @@ def make_view(context: GenerationContext, ros: int = 2) -> GeneratedView:
     refused_messages = find_refused_messages(context.architecture, ros)
     all_endpoints = index_endpoints(context.architecture)
     for node in (node for nodes in programs.values() for node in nodes):
-        findings += _tell_refused(all_endpoints.get(node.id, ()), refused_messages)
+        findings += _tell_refused(context.architecture, all_endpoints.get(node.id, ()), refused_messages)
     endpoints = {
         node: [each for each in used if each.message not in refused_messages] for node, used in all_endpoints.items()
     }
@@ -227,6 +229,14 @@ def _record_program(
     message_packages = {str(port["package"]) for ports in sections.values() for port in ports}
     component_type = find_program_type(architecture, nodes)
     functionalities = [each.functionality for each in components if each.functionality]
+    title = components[0].title if len(components) == 1 else first.title
+    description = first.description or " ".join(functionalities)
+    place = write_place(_find_place(architecture, first))
+    if component_type:
+        title, place = component_type.title, write_place(component_type.at)
+    elif len(nodes) > 1:
+        # What holds of the first of its nodes alone is not said of the program.
+        title, description, place = title_from_id(program_name), "", program_name
     class_name = make_camel_name(_name_module(program_name))
     if {class_name, f"{class_name}Node"} & IMPORTED_CLASSES:
         class_name += "Program"
@@ -237,12 +247,8 @@ def _record_program(
         "module": _name_module(program_name),
         "class_name": class_name,
         "component_type": component_type.id if component_type else "",
-        "title": component_type.title
-        if component_type
-        else components[0].title
-        if len(components) == 1
-        else first.title,
-        "description": first.description or " ".join(functionalities),
+        "title": title,
+        "description": description,
         "is_lifecycle": "lifecycle" in first.kinds,
         "is_composable": is_loadable(first),
         "nodes": [_record_node(architecture, each, program_names) for each in nodes],
@@ -258,13 +264,13 @@ def _record_program(
             architecture, {str(port["type"]) for ports in sections.values() for port in ports}
         ),
         "python_imports": import_messages(sections, class_name),
-        "place": write_place(component_type.at if component_type else _find_place(architecture, first)),
+        "place": place,
     }
     _say_when_sent(sections, timers)
-    if component_type:
-        # Of a type, not of the first of its instances.
+    if component_type or len(nodes) > 1:
+        # Of a type or program, not of the first of its nodes.
         for timer in timers:
-            timer["component"] = component_type.id
+            timer["component"] = component_type.id if component_type else program_name
     return record, [*findings, *parameter_findings]
 
 
@@ -278,14 +284,16 @@ def _say_when_sent(sections: Mapping[str, Sequence[dict[str, object]]], timers: 
         port["sent_in"] = methods.get(str(port["port"]).rpartition(".")[0], "send_seldom").rstrip("_")
 
 
-def _tell_refused(endpoints: Iterable[Endpoint], refused_messages: Collection[str]) -> Iterator[Diagnostic]:
+def _tell_refused(
+    architecture: Architecture, endpoints: Iterable[Endpoint], refused_messages: Collection[str]
+) -> Iterator[Diagnostic]:
     """Yield what is left out of a node since no package can have its message."""
     for each in endpoints:
         if each.message in refused_messages:
             yield tell_left_out(
                 f"`{each.port or each.label}` of the node `{each.node}` is left out: `ros_interfaces` generates no "
                 f"`{each.message}`, and says why",
-                each.at,
+                find_endpoint_span(architecture, each),
                 element=each.node,
             )
 

@@ -5,11 +5,13 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable, Mapping, Sequence
 
-from archgen.bringup.program_names import choose_own_names, find_common_message, group_endpoints
+from archgen.analyses.topic_sources import find_endpoint_span
+from archgen.bringup.program_names import choose_own_names, find_common_message, group_endpoints, name_program
+from archgen.bringup.start_commands import has_substitution
 from archgen.diagnostics import Diagnostic
 from archgen.model.architecture import Architecture
 from archgen.model.code_names import PYTHON_KEYWORDS
-from archgen.model.component import ComponentType, Input, Output
+from archgen.model.component import ComponentType
 from archgen.model.message_types import ConceptualType, full_message_name
 from archgen.model.node import Endpoint, Node, Qos
 from archgen.model.parameter import Parameter
@@ -40,52 +42,54 @@ def record_ports(
     findings: list[Diagnostic] = []
     groups = group_endpoints(nodes, endpoints)
     own_names = choose_own_names(architecture, groups)
-    is_type = find_program_type(architecture, nodes) is not None
+    shared_name = name_shared_program(architecture, nodes)
     # By their names: a line that moves in the YAML moves nothing in the code.
     for (use, flow, key), port_endpoints in sorted(groups.items()):
         if find_common_message(port_endpoints) is None:
-            findings.append(_tell_unknown_message(port_endpoints[0], {each.message for each in port_endpoints}))
+            findings.append(
+                _tell_unknown_message(architecture, port_endpoints[0], {each.message for each in port_endpoints})
+            )
             continue
         if str(port_endpoints[0].message).rpartition("/")[2] in PYTHON_KEYWORDS:
-            findings.append(_tell_bad_message(port_endpoints[0]))
+            findings.append(_tell_bad_message(architecture, port_endpoints[0]))
             continue
         sections[PORT_SECTIONS[use, flow]].append(
-            _record_port(architecture, key, own_names[use, flow, key], port_endpoints, is_type=is_type)
+            _record_port(architecture, key, own_names[use, flow, key], port_endpoints, shared_name)
             | {"meaning": _write_meaning(architecture, port_endpoints, is_shared=len(nodes) > 1)}
         )
     return sections, findings
 
 
-def _tell_unknown_message(endpoint: Endpoint, messages: set[str | None]) -> Diagnostic:
+def _tell_unknown_message(architecture: Architecture, endpoint: Endpoint, messages: set[str | None]) -> Diagnostic:
     named = f"`{endpoint.port or endpoint.label}` of the node `{endpoint.node}`"
     if len(messages) > 1:
         shown = " and ".join(sorted(f"`{each}`" for each in messages if each))
         return tell_left_out(
             f"{named} is left out: nodes of one program use it with several messages, {shown or 'one of them unknown'}",
-            endpoint.at,
+            find_endpoint_span(architecture, endpoint),
             element=endpoint.node,
             help_line="give one of the nodes an `executable` of its own",
         )
     return tell_left_out(
         f"{named} is left out: nobody says which message it has",
-        endpoint.at,
+        find_endpoint_span(architecture, endpoint),
         element=endpoint.node,
         help_line="map its type to a message below `types`, or give the type `fields`",
     )
 
 
-def _tell_bad_message(endpoint: Endpoint) -> Diagnostic:
+def _tell_bad_message(architecture: Architecture, endpoint: Endpoint) -> Diagnostic:
     return tell_left_out(
         f"`{endpoint.port or endpoint.label}` of the node `{endpoint.node}` is left out: no class can be called as its "
         f"message `{endpoint.message}`",
-        endpoint.at,
+        find_endpoint_span(architecture, endpoint),
         element=endpoint.node,
         help_line="give its type another name, or another `message`",
     )
 
 
 def _record_port(
-    architecture: Architecture, key: str, own_name: str, endpoints: Sequence[Endpoint], *, is_type: bool
+    architecture: Architecture, key: str, own_name: str, endpoints: Sequence[Endpoint], shared_name: str
 ) -> dict[str, object]:
     first = endpoints[0]
     package, kind, name = (first.message or "//").split("/")
@@ -109,7 +113,9 @@ def _record_port(
         "size_bytes": None if data_type is None else _round_quantity(data_type.size),
         "envelope": record_envelope(architecture, endpoints),
         "qos": record_qos(first.qos),
-        "place": _place_port(architecture, port or first, is_type=is_type),
+        "place": f"{shared_name}.{port.id.rpartition('.')[2]}"
+        if shared_name and port
+        else write_place(port.at if port else first.at),
     }
 
 
@@ -127,14 +133,6 @@ def _write_meaning(architecture: Architecture, port_endpoints: Sequence[Endpoint
         element = f"{component.component_type}.{first.port.rpartition('.')[2]}"
     source = "<" + ",".join(first.sources) if first.sources and not is_shared else ""
     return f"{element}{source}:{message}".replace(" ", "_")
-
-
-def _place_port(architecture: Architecture, port: Input | Output | Endpoint, *, is_type: bool) -> str:
-    """Return where a port is written; of a program that is a component type, the path in it, whichever instance comes first."""
-    component = architecture.components.get(port.component or "")
-    if is_type and component and component.component_type and not isinstance(port, Endpoint):
-        return f"{component.component_type}.{port.id.rpartition('.')[2]}"
-    return write_place(port.at)
 
 
 def record_qos(qos: Qos) -> dict[str, object]:
@@ -177,7 +175,8 @@ def record_envelope(architecture: Architecture, endpoints: Sequence[Endpoint]) -
     for endpoint in endpoints:
         if endpoint.use == "subscribes":
             senders[architecture.nodes[endpoint.node].full_name] = _list_senders(architecture, endpoint)
-    return {"payload": message or payload_type, "senders": senders}
+    # The longest name last: it counts where a node's name ends with several.
+    return {"payload": message or payload_type, "senders": dict(sorted(senders.items(), key=lambda each: len(each[0])))}
 
 
 def is_envelope(data_type: ConceptualType) -> bool:
@@ -203,11 +202,13 @@ def record_parameters(
 ) -> tuple[list[dict[str, object]], list[Diagnostic]]:
     """Return the parameters of the nodes of one program, and what is left out.
 
-    `default` is the value where all nodes have the same; None where each node is given its own, or nobody gives one.
+    `default` is the value where all nodes have the same; None where each node is given its own, one is filled in at its
+    start, or nobody gives one.
     `is_given` says whether all nodes are given one, and `first_value` which the first is.
     """
     ros_1 = is_ros_1(architecture.distro)
     component_type = find_program_type(architecture, nodes)
+    shared_name = name_shared_program(architecture, nodes)
     values: dict[str, list[EffectiveParameter]] = {}
     for node in nodes:
         for name, parameter in find_effective_parameters(architecture, node).items():
@@ -236,8 +237,20 @@ def record_parameters(
             # What instances are set to is told to each of them, so that a further one changes no program.
             record["default"] = None if declared.value is None else convert_ros_value(declared.value, ros_type)
             record["place"] = write_place(declared.at)
+        elif shared_name:
+            record["place"] = f"{shared_name}.{name}"
+        if has_substitution(record["default"]):
+            # Who starts the node fills it in; a program started by hand would take the words for the value.
+            record["default"] = None
         records.append(record)
     return records, findings
+
+
+def name_shared_program(architecture: Architecture, nodes: Sequence[Node]) -> str:
+    """Return what nodes of one program are instead of each of them: their component type, else, of several, the program."""
+    if find_program_type(architecture, nodes):
+        return architecture.components[nodes[0].implements[0]].component_type or ""
+    return name_program(architecture, nodes[0]) if len(nodes) > 1 else ""
 
 
 def find_program_type(architecture: Architecture, nodes: Sequence[Node]) -> ComponentType | None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import sys
 from collections.abc import Callable
 from pathlib import Path
 
@@ -196,6 +197,12 @@ def test_the_number_of_files_is_bounded(make: Make) -> None:
     tree, (found,) = text.render_backend(backend, {"record": {"many": list(range(6))}}, QUICK)
     assert tree is None
     assert "more than 5 files" in found.message
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="computing is not bound there")
+def test_a_busy_machine_ends_no_template_that_computes_little() -> None:
+    """With 20 others on its processor, a worker gets to the end of what it may compute before anybody ends it."""
+    assert TemplateLimits().waiting > 20 * TemplateLimits().computing
 
 
 def test_for_each_must_be_there(make: Make) -> None:

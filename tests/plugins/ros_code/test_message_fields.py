@@ -159,6 +159,21 @@ ANSWERS = {
         ),
         [("9", "62")],
     ),
+    "future that is kept": (
+        (
+            "    asked = None\n\n    def start(self):\n        self.asked = self.node.call_mode(1)\n\n"
+            "    def look(self):\n        if self.asked and self.asked.done():\n"
+            "            self.ok = self.asked.result().ok\n            self.asked = None\n"
+        ),
+        [("14", "43")],
+    ),
+    "one of two that are kept": (
+        (
+            "    def start(self, other):\n        self.asked = self.node.call_mode(1)\n"
+            "        self.asked = other.call(1)\n        return self.asked.result().ok\n"
+        ),
+        [],
+    ),
     "function inside": (
         (
             "    def start(self):\n        def hear(done):\n            return done.result().ok\n\n"
@@ -214,6 +229,26 @@ def test_a_client_in_cpp_is_told_of_fields_of_the_answer_that_are_gone(tmp_path:
     code = f"\nvoid start()\n{{\n  {CPP_ANSWERS[form]}\n}}\n"
     (told,) = _change_service(tmp_path, "cpp", own_path, lambda old: old + code, new)
     assert "`rt_msgs/srv/SetMode/Response` has no field `ok` any more; it is most likely `done` now" in told
+
+
+@pytest.mark.parametrize("language", ["python", "cpp"])
+def test_a_field_is_told_that_went_with_the_name_of_its_port(tmp_path: Path, language: str) -> None:
+    """Each of the two is told until it is mended, whichever comes first."""
+    robot, backend = SERVING.replace("LANGUAGE", language), f"ros2_{language}"
+    _generate(tmp_path, robot, backend, 0)
+    own = tmp_path / "ws/src/rt_g" / ("rt_g/wheels.py" if language == "python" else "src/wheels_behaviour.cpp")
+    text, cpp_form = own.read_text("utf-8"), CPP_ANSWERS["future"]
+    text += (
+        "\n" + ANSWERS["future that is kept"][0] if language == "python" else f"\nvoid start()\n{{\n  {cpp_form}\n}}\n"
+    )
+    own.write_text(text, encoding="utf-8")
+    assert _generate(tmp_path, robot, backend, 0) == []
+    changed = robot.replace("{ok: bool}", "{done: bool}").replace("{mode: drill", "{shift: drill")
+    told = _generate(tmp_path, changed, backend, 1)
+    assert ["call_mode" in told[0], "no field `ok` any more" in told[1], len(told)] == [True, True, 2]
+    own.write_text(text.replace("call_mode", "call_shift"), encoding="utf-8")
+    (left,) = _generate(tmp_path, changed, backend, 1)
+    assert "has no field `ok` any more; it is most likely `done` now" in left
 
 
 @pytest.mark.parametrize("language", ["python", "cpp"])

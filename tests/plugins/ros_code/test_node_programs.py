@@ -133,10 +133,37 @@ def test_a_message_that_cannot_be_is_refused_by_its_nodes_too(tmp_path: Path) ->
     files = generate_all(tmp_path / "p", ORCHARD, tmp_path / "w")
     assert not [path for path in files if path.endswith("Bad.msg")]
     assert "Bad" not in files["src/orchard_g/orchard_g/cam_node.py"]
-    said = [each.message for each in make_view(GenerationContext(check_project(tmp_path / "p").architecture)).findings]
-    assert said == [
+    (said,) = make_view(GenerationContext(check_project(tmp_path / "p").architecture)).findings
+    assert said.message == (
         "`g.cam.bad` of the node `cam` is left out: `ros_interfaces` generates no `orchard_msgs/msg/Bad`, and says why"
-    ]
+    )
+    assert str(said.span) == "archgen.yaml:15:51"
+
+
+def test_what_several_nodes_run_names_none_of_them(tmp_path: Path) -> None:
+    """Beside a component type, which names itself, nodes share a program by its `executable`."""
+    part = "{{functionality: Cuts {0}., title: The {0} one, inputs: {{words: cam.words}}, parameters: {{blade: 1.5}}, timing: {{rate: 2 Hz}}, node: {{package: cut, executable: cutter}}}}"
+    parts = "".join(f"      {side}_one: {part.format(side)}\n" for side in ("left", "right"))
+    files = generate_all(tmp_path / "p", ORCHARD.replace("\ntypes", "\n" + parts + "types"), tmp_path / "w")
+    made = {path: text for path, text in files.items() if path.startswith("src/cut/")}
+    assert "# cutter.words" in made["src/cut/cut/cutter_node.py"]
+    assert "# cutter.blade" in made["src/cut/cut/cutter_node.py"]
+    assert '"""What Cutter does:' in made["src/cut/cut/cutter.py"]
+    # The README says which nodes run a program.
+    assert [path for path, text in made.items() if "left" in text] == ["src/cut/README.md"]
+
+
+def test_what_is_filled_in_at_the_start_is_no_default(tmp_path: Path) -> None:
+    """A program that is started by hand would take `$(find-pkg-share cams)` for the value."""
+    value = '{maps: "$(find-pkg-share cams)/maps", rate: 5}'
+    text = ORCHARD.replace("cam: {", f"cam: {{parameters: {value}, ").replace("force: 20.0", 'force: "$(env FORCE)"')
+    files = generate_all(tmp_path / "p", text, tmp_path / "w")
+    for program, name, ros_type in (("cam", "maps", "STRING"), ("arm", "force", "DOUBLE")):
+        node = files[f"src/orchard_g/orchard_g/{program}_node.py"]
+        assert "$(" not in node + files[f"src/orchard_g/test/test_{program}_node.py"]
+        assert f"'{name}',\n            Parameter.Type.{ros_type}," in node
+    (host,) = (text for path, text in files.items() if "/launch/hosts/" in path)
+    assert 'name="maps" value="$(find-pkg-share cams)/maps"' in host
 
 
 def test_a_further_instance_changes_no_program(tmp_path: Path) -> None:

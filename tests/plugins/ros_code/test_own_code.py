@@ -603,6 +603,48 @@ def _make_rig(folder: Path, drill: str, wheels: str, status: int, *more: str) ->
     return archgen_here("generate", *more, cwd=folder, status=status).stderr.decode()
 
 
+def _swap(folder: Path, front: str, rear: str, status: int, *more: str) -> str:
+    groups = f"""\
+groups:
+  front: {{components: {{eye: {{outputs: {{spot: Speed}}, node: {{language: {front}}}}}}}}}
+  rear: {{components: {{leg: {{inputs: {{spot: eye.spot}}, node: {{language: {rear}}}}}}}}}
+"""
+    (folder / "archgen.yaml").write_text(RIG.partition("groups:")[0] + groups, encoding="utf-8")
+    return archgen_here("generate", *more, cwd=folder, status=status).stderr.decode()
+
+
+def test_two_packages_swap_their_languages_in_one_run(tmp_path: Path) -> None:
+    """Each backend is in the way of the other one until it has taken away what it no longer makes."""
+    _swap(tmp_path, "python", "cpp", 0)
+    own = tmp_path / "ws/src/rt_front/rt_front/eye.py"
+    own.write_text(own.read_text("utf-8") + "\n\nMINE = 1\n", encoding="utf-8")
+    before = contents(tmp_path / "ws")
+    assert "error" not in _swap(tmp_path, "cpp", "python", 1, "--check")
+    assert contents(tmp_path / "ws") == before
+    assert "error" not in _swap(tmp_path, "cpp", "python", 0)
+    assert "MINE" in own.read_text("utf-8")
+    made = {each.parent.name: each.name for each in (tmp_path / "ws/src").rglob("*") if each.name in BUILT_BY}
+    assert made == {"rt_front": "CMakeLists.txt", "rt_rear": "setup.py"}
+    assert _swap(tmp_path, "cpp", "python", 0, "--check") == ""
+
+
+def test_a_language_that_swaps_with_another_is_told_whose_turn_it_is(tmp_path: Path) -> None:
+    """With one backend in a run, too, one after the other comes to its end."""
+    _swap(tmp_path, "python", "cpp", 0)
+    said = _swap(tmp_path, "cpp", "python", 1, "ros2_cpp")
+    assert "`archgen generate ros2_python` takes it away" in said
+    _swap(tmp_path, "cpp", "python", 0, "ros2_python")
+    _swap(tmp_path, "cpp", "python", 0, "ros2_cpp")
+    assert _swap(tmp_path, "cpp", "python", 0, "--check") == ""
+
+
+BUILT_BY = ("setup.py", "CMakeLists.txt")
+
+
+def contents(folder: Path) -> dict[str, bytes]:
+    return {str(each.relative_to(folder)): each.read_bytes() for each in folder.rglob("*") if each.is_file()}
+
+
 def test_a_node_in_another_language_moves_its_package_in_one_run(tmp_path: Path) -> None:
     _make_rig(tmp_path, "cpp", "cpp", 0)
     said = _make_rig(tmp_path, "python", "cpp", 1, "--check")
