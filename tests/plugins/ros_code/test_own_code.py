@@ -587,7 +587,7 @@ RIG = """\
 archgen: 1
 project: {id: rt, title: Robot}
 ros: {distro: jazzy}
-generate: {into: ws, backends: {ros2_python: {}, ros2_cpp: {}}}
+generate: {into: ws, backends: {ros_interfaces: {}, ros2_python: {}, ros2_cpp: {}}}
 types: {Speed: {fields: {value: float64}}}
 groups:
   rig:
