@@ -9,6 +9,7 @@ from archgen.emit.site import status_marks
 from archgen.emit.site.html_text import replace_forbidden
 from archgen.emit.site.page_links import SiteLinks
 from archgen.views.explorer.map_shapes import LINKED_TABLES, ExplorerMap, Row
+from archgen.views.search.entry_ranking import QUESTION_WORDS
 from archgen.views.search.search_entry import SearchEntry
 from archgen.views.shapes import Page, split_anchor
 
@@ -133,6 +134,7 @@ def build_search_files(entries: Iterable[SearchEntry], links: SiteLinks) -> Iter
             for entry, address in rows_by_kind.get("finding", ())[:_EMPTY_BOX_FINDINGS]
         ],
         "examples": _choose_examples(rows),
+        "questionWords": QUESTION_WORDS,
     }
     yield _make_script("index", ("index", index))
     yield from (_make_script(name, call) for name, call in scripts)
