@@ -94,7 +94,7 @@ def _make_code_cell(text: str | None) -> Inlines:
 def _make_base_cell(lookup: Lookup, component_type: ComponentType) -> Inlines:
     base = lookup.architecture.component_types.get(component_type.base_name)
     if base is None:
-        return inline_text.to_inlines(component_type.base) if component_type.base else ()
+        return inline_text.to_inlines(component_type.base)
     return (type_page_link(base),)
 
 

@@ -86,7 +86,7 @@ def list_node_facts(lookup: Lookup, node: Node) -> list[Fact]:
         Fact("package", "Package", (*inline_text.value_or_unknown(node.package), *_program_parts(node))),
         Fact("", "Command", _to_code(shlex.join(node.command))),
         Fact("", "Arguments", _to_code(shlex.join(node.arguments))),
-        Fact("", "Language", inline_text.to_inlines(_LANGUAGE_TITLES[node.language]) if node.language else ()),
+        Fact("", "Language", inline_text.to_inlines(_LANGUAGE_TITLES.get(node.language or ""))),
         Fact("", "Remaps", _remap_facts(lookup, node)),
         Fact("", "Start", (Text(words), Text(" ("), Text("the plan", ref="page:start_up"), Text(")")) if words else ()),
         *(
@@ -111,7 +111,7 @@ def list_node_facts(lookup: Lookup, node: Node) -> list[Fact]:
         sentence = timing_words.format_timing_sentence(timing)
         facts.append(Fact("activity" if is_one_of_several else "timing", title, inline_text.to_inlines(sentence)))
     facts += element_timing.make_node_facts(lookup, node)
-    return [fact for fact in facts if any(run.text for run in fact.value)]
+    return [fact for fact in facts if fact.value]
 
 
 def _to_code(text: str) -> Inlines:

@@ -198,4 +198,4 @@ def _remarks_cell(lookup: Lookup, port: Input | Output) -> Inlines:
         inline_text.link_urls(port.urls.items(), lookup.repository),
         *(facts for _, facts in list_annotation_facts(lookup, port)),
     ]
-    return inline_text.join_inlines((part for part in parts if any(run.text for run in part)), "; ")
+    return inline_text.join_inlines(filter(None, parts), "; ")

@@ -32,8 +32,8 @@ def _make_field_table(architecture: Architecture, fields: Iterable[DataField], a
             inline_text.to_inlines(Text(field.name, code=True)),
             _type_cell(architecture, field),
             inline_text.to_inlines(Text(format_default(field), code=True)) if field.default is not None else (),
-            inline_text.to_inlines(field.unit) if field.unit else (),
-            inline_text.to_inlines(field.comment) if field.comment else (),
+            inline_text.to_inlines(field.unit),
+            inline_text.to_inlines(field.comment),
         )
         for field in fields
     )
@@ -60,7 +60,7 @@ def make_constant_table(
             inline_text.to_inlines(Text(each.name, code=True)),
             inline_text.to_inlines(Text(each.value, code=True)),
             inline_text.to_inlines(Text(each.type, code=True)),
-            inline_text.to_inlines(each.comment) if each.comment else (),
+            inline_text.to_inlines(each.comment),
         )
         for each in constants
     )

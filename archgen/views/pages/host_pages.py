@@ -14,7 +14,7 @@ from archgen.views.elements.annotation_facts import list_annotation_facts
 from archgen.views.lookup import Lookup
 from archgen.views.pages import context_pages
 from archgen.views.pages.context_pages import FigureFilter
-from archgen.views.shapes import Block, Facts, Inlines, Markdown, Page, Section, Text
+from archgen.views.shapes import Block, Facts, Inlines, Markdown, Page, Section, Text, show_known
 from archgen.views.tables import deployment_tables
 from archgen.views.timing import element_timing
 from archgen.views.timing.host_waterfall import make_host_waterfall
@@ -35,11 +35,14 @@ def _host_page(lookup: Lookup, host: Host, keep_drawn: FigureFilter) -> Page:
     order = ", ".join(filter(None, (host.scheduling, timing_words.format_core_orders(host))))
     facts = [
         ("Cores", inline_text.count_to_inlines(host.cores)),
-        ("Address", inline_text.to_inlines(host.address or "")),
-        ("Discovery server", inline_text.to_inlines(f"port {host.discovery_server}" if host.discovery_server else "")),
-        ("Scheduling", inline_text.to_inlines(order) if order else ()),
+        ("Address", inline_text.to_inlines(host.address)),
+        (
+            "Discovery server",
+            inline_text.to_inlines(f"port {host.discovery_server}" if host.discovery_server else None),
+        ),
+        ("Scheduling", inline_text.to_inlines(order)),
         ("Environment", inline_text.join_inlines((Text(f"{each[0]}={each[1]}"),) for each in host.environment.items())),
-        ("Tags", inline_text.to_inlines(", ".join(host.tags)) if host.tags else ()),
+        ("Tags", inline_text.to_inlines(", ".join(host.tags))),
         *list_annotation_facts(lookup, host),
         ("Resources", inline_text.join_inlines(map(inline_text.to_inlines, _name_resources(lookup, host)))),
         *_list_link_facts(lookup, host),
@@ -52,7 +55,7 @@ def _host_page(lookup: Lookup, host: Host, keep_drawn: FigureFilter) -> Page:
             ),
         ),
     ]
-    blocks: list[Block] = [Facts(tuple((name, value) for name, value in facts if value))]
+    blocks: list[Block] = [show_known(facts)]
     blocks += [Markdown(host.description)] if host.description else []
     waterfall = make_host_waterfall(lookup, lookup.timing, host.id) if lookup.timing else None
     # The waterfall says the same at a glance; the chart has a page of the report, which has no waterfall.
