@@ -10,7 +10,6 @@ from typing import Literal
 from archgen.frozen import dataclass, replace
 from archgen.model.architecture import Architecture, Milestone, Partner
 from archgen.model.component import Component
-from archgen.model.flow_graph import build_component_graph
 from archgen.model.graph_search import find_reachable
 from archgen.model.partner_interfaces import components_at_ends, foreign_owners
 from archgen.model.requirement import Requirement
@@ -201,7 +200,7 @@ def find_impact(
     chains = tuple(_find_chains(judged, late))
     broken_ids = {each.result.id for each in chains}
     interfaces = _find_interfaces(lookup, exchanges, late)
-    successors = build_component_graph(lookup.architecture).successors
+    successors = lookup.component_flows.successors
     fed = [name for name in find_reachable(successors, sorted(late.components)) if name not in late.components]
     direct = {reader for name in late.components for reader in successors.get(name, ())}
     cases = lookup.steps.by_use_case

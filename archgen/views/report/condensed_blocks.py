@@ -264,6 +264,11 @@ def _message_cell(endpoint: Endpoint) -> Inlines:
     )
 
 
+def set_small(table: Table) -> Table:
+    """Return a table in small type on an upright page, without a number: its title stands above it."""
+    return replace(table, wide=False, numbered=False, dense=True)
+
+
 def shorten_message(name: str) -> str:
     """Return a message's name without the folder that its use tells: `nav_msgs/Odometry` for `nav_msgs/msg/Odometry`."""
     package, _, rest = name.partition("/")
