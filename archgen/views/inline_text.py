@@ -43,6 +43,11 @@ def to_inlines(*parts: str | Text | None) -> Inlines:
     return tuple([share_text(part) if isinstance(part, str) else part for part in parts if part])
 
 
+def to_code(text: str | None) -> Inlines:
+    """Return a text as code, nothing for an empty one."""
+    return (share_text(text, code=True),) if text else ()
+
+
 def message_to_inlines(message: str, *, muted: bool = False) -> Inlines:
     """Turn a finding's message into inlines; what it quotes in backticks becomes code."""
     parts = _BACKTICKED.split(message)
@@ -224,9 +229,10 @@ def list_qos_settings(qos: Qos) -> list[str]:
     return [part for part in parts if part]
 
 
-def format_qos_cell(qos: Qos) -> Inlines:
-    """Describe a quality of service for a table cell; a default that nobody wrote is muted."""
-    return (Text(format_qos(qos), muted=not qos.written),)
+def format_qos_cell(endpoint: Endpoint) -> Inlines:
+    """Describe the quality of service of a topic's end for a table cell; a default that nobody wrote is muted."""
+    has_qos = endpoint.flow == "topic" and endpoint.medium == ROS
+    return (Text(format_qos(endpoint.qos), muted=not endpoint.qos.written),) if has_qos else ()
 
 
 def cut_text(text: str, characters: int) -> str:

@@ -14,6 +14,7 @@ from archgen.model.component import Component, Connection, Input, Output
 from archgen.model.component_nesting import find_component, list_members, list_surrounding, list_written_connections
 from archgen.model.coordinate_frames import Frame
 from archgen.model.flow_graph import FlowGraph, build_component_graph
+from archgen.model.graph_search import find_reachable
 from archgen.model.known_interfaces import InterfaceField
 from archgen.model.message_types import ConceptualType
 from archgen.model.node import Endpoint, Node, Topic
@@ -143,6 +144,11 @@ class Lookup:
         leaves = self.architecture.leaves_of(component_id)
         nodes = {node.id: node for leaf in leaves for node in self.nodes_of.get(leaf, ())}
         return tuple(nodes.values())
+
+    def find_fed(self, component_ids: Iterable[str]) -> dict[str, int]:
+        """Return the other components that some feed in the end, nearest first, each with its number of steps."""
+        steps = find_reachable(self.component_flows.successors, component_ids)
+        return {name: count for name, count in steps.items() if count}
 
     def shown_nodes(self) -> list[Node]:
         """Return the shown nodes, in order."""

@@ -13,7 +13,7 @@ from archgen.model.parameter_values import (
     describe_origin,
     find_effective_parameters,
 )
-from archgen.views.inline_text import to_inlines, topic_link
+from archgen.views.inline_text import to_code, to_inlines, topic_link
 from archgen.views.lookup import Lookup
 from archgen.views.shapes import Block, Column, Inlines, Table, Text, drop_empty_columns, make_columns
 
@@ -36,9 +36,9 @@ def list_equal_settings(component: Component, component_type: ComponentType) -> 
 def _make_parameter_table(component: Component | ComponentType) -> Table | None:
     rows = tuple(
         (
-            _to_code(each.name),
-            _to_code(each.type),
-            _to_code(format_parameter(each.value))
+            to_code(each.name),
+            to_code(each.type),
+            to_code(format_parameter(each.value))
             if each.value is not None
             else to_inlines(describe_missing_value(each)),
             to_inlines(each.unit),
@@ -48,7 +48,7 @@ def _make_parameter_table(component: Component | ComponentType) -> Table | None:
         for each in component.parameters.values()
     )
     rows += tuple(
-        (_to_code(_format_open_set(name)), (), (), (), to_inlines("any"), to_inlines("open set"))
+        (to_code(_format_open_set(name)), (), (), (), to_inlines("any"), to_inlines("open set"))
         for name in component.open
     )
     columns = make_columns(("Parameter", 1.3), ("Type", 0.7), "Value", ("Unit", 0.5), "May be", ("Remarks", 1.6))
@@ -59,7 +59,7 @@ def _make_parameter_table(component: Component | ComponentType) -> Table | None:
 def _make_operation_table(component: Component | ComponentType) -> Table | None:
     rows = tuple(
         (
-            _to_code(name),
+            to_code(name),
             _type_cell(each.request),
             _type_cell(each.response),
             to_inlines("; ".join(filter(None, (each.call, each.visibility, _on_one_line(each.description))))),
@@ -111,17 +111,13 @@ def _on_one_line(text: str | None) -> str:
     return " ".join((text or "").split())
 
 
-def _to_code(text: str | None) -> Inlines:
-    return (Text(text, code=True),) if text else ()
-
-
 def make_effective_table(lookup: Lookup, node: Node) -> Table | None:
     """List the parameters of a node with the values that count; where they come from, if not all are the node's own."""
     parameters = find_effective_parameters(lookup.architecture, node)
     shows_origin = any(each.origin != "node" for each in parameters.values())
     rows = tuple(
         (
-            _to_code(each.name),
+            to_code(each.name),
             to_inlines(_value_run(lookup, node, each)),
             *((to_inlines(name_origin(each)),) if shows_origin else ()),
         )

@@ -40,7 +40,7 @@ def list_port_cells(lookup: Lookup, component: Component, kind: PortKind) -> lis
     if kind == "input":
         return [
             PortCells(
-                inline_text.to_inlines(Text(port.name, code=True)),
+                inline_text.to_code(port.name),
                 _source_cell(lookup, port),
                 _input_type_cell(lookup, port),
                 _list_behind(lookup, kind, port) if shell else (),

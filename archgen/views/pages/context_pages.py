@@ -160,8 +160,8 @@ def _endpoint_blocks(lookup: Lookup, topic: Topic, endpoints: tuple[Endpoint, ..
                 else ()
             ),
             # Ports by their own names: the component is in the column before.
-            inline_text.to_inlines(Text(endpoint.port.rsplit(".", 1)[-1], code=True)) if endpoint.port else (),
-            inline_text.format_qos_cell(endpoint.qos) if topic.flow == "topic" and topic.medium == ROS else (),
+            inline_text.to_code((endpoint.port or "").rpartition(".")[2]),
+            inline_text.format_qos_cell(endpoint),
         )
         for endpoint in endpoints
     )

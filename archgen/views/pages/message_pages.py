@@ -127,7 +127,7 @@ class MessagePages:
     def _make_fact_blocks(self, message: str) -> Iterator[Block]:
         definition = self._definition_of(message)
         facts = (
-            ("Full name", inline_text.to_inlines(Text(message, code=True))),
+            ("Full name", inline_text.to_code(message)),
             ("Size", self._size_cell(message)),
             ("Types", inline_text.join_inlines(inline_text.type_link(each.name) for each in self._types_of(message))),
             ("Part of", inline_text.join_inlines((message_link(each),) for each in self._containers.get(message, ()))),
@@ -167,9 +167,9 @@ class MessagePages:
     def _make_field_table(self, anchor: str, title: str, fields: tuple[InterfaceField, ...]) -> Table:
         rows = tuple(
             (
-                inline_text.to_inlines(Text(field.name, code=True)),
+                inline_text.to_code(field.name),
                 self._field_type_cell(field),
-                inline_text.to_inlines(Text(field.default, code=True)) if field.default else (),
+                inline_text.to_code(field.default),
                 inline_text.to_inlines(field.comment),
             )
             for field in fields

@@ -44,7 +44,7 @@ def _list_facts(lookup: Lookup, requirement: Requirement) -> Iterator[tuple[str,
     if trace.parts or trace.is_verification_told or trace.missed:
         yield "State", (requirement_servers.state_chip(lookup, requirement),)
     parents = (inline_text.requirement_link(lookup.architecture, parent) for parent in requirement.parents)
-    yield "Part of", inline_text.join_lines(parents) if requirement.parents else ()
+    yield "Part of", inline_text.join_lines(parents)
     for name, words in (("Kind", requirement.kind), ("Priority", requirement.priority), ("Source", requirement.source)):
         yield name, inline_text.to_inlines(words)
     use_cases = (requirement_tables.use_case_link(lookup, name) for name in requirement.use_cases)

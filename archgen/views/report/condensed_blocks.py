@@ -236,11 +236,11 @@ def _join_named(facts: Iterable[Fact]) -> Inlines:
 def _make_endpoint_table(lookup: Lookup, component: Component, nodes: Sequence[Node]) -> Table | None:
     rows = tuple(
         (
-            inline_text.to_inlines(Text(node.id, code=True)),
+            inline_text.to_code(node.id),
             inline_text.to_inlines(_USE_WORDS[endpoint.use]),
             (*inline_text.name_carrier(endpoint), *([Text(" internal", muted=True)] if endpoint.internal else [])),
             _message_cell(endpoint),
-            inline_text.to_inlines(Text(endpoint.port.rsplit(".", 1)[-1], code=True)) if endpoint.port else (),
+            inline_text.to_code((endpoint.port or "").rpartition(".")[2]),
             _qos_cell(endpoint),
         )
         for node in nodes

@@ -148,7 +148,7 @@ class _ReportPrinter:
         texts = [block for block in blocks if isinstance(block, Markdown)]
         group = self.lookup.architecture.groups[section.subject]
         facts = Facts(tuple(map(condensed_blocks.print_fact, list_group_facts(self.lookup, group))))
-        others = [
+        others: list[Block] = [
             drop_column(block, "nodes") if isinstance(block, Table) else block
             for block in blocks
             if not isinstance(block, Markdown | Facts)

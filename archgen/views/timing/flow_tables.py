@@ -12,7 +12,6 @@ from archgen.diagnostics import join_words, order_naturally
 from archgen.frozen import NamedTuple
 from archgen.model.component import Component
 from archgen.model.element_ids import make_id, make_unique_id
-from archgen.model.graph_search import find_reachable
 from archgen.model.node import Node
 from archgen.timing.analysis import ChainResult
 from archgen.timing.chains.chain_advice import sum_known_parts
@@ -352,8 +351,8 @@ def list_reliance(lookup: Lookup, element: Node | Component, max_names: int = 8)
         else (architecture.leaves_of(element.id), lookup.nodes_inside(element.id))
     )
     started = {element.id, *own, *(node.id for node in nodes)}
-    steps = find_reachable(lookup.component_flows.successors, own)
-    links = {name: (inline_text.component_link(components[name]),) for name in steps if name not in own}
+    steps = lookup.find_fed(own)
+    links = {name: (inline_text.component_link(components[name]),) for name in steps}
     inputs = [
         architecture.inputs[connection.input]
         for name in own
