@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 import dataclasses
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from itertools import islice
 
+from archgen.grouping import group_pairs
 from archgen.model.component import Component
 from archgen.views import inline_text
 from archgen.views.elements.functional_level import (
@@ -182,19 +183,12 @@ def _list_flow_tables(
     lookup: Lookup, component: Component, rows: tuple[Sequence[FlowRow], Sequence[FlowRow]]
 ) -> Iterator[Table]:
     """Yield the tables of inputs and outputs. A flow stands at its port, whichever way its requests run."""
-    taken, given = (_group_by_port(each) for each in rows)
+    taken, given = (group_pairs((row.port, row) for row in each) for each in rows)
     for kind, own, other in (("input", taken, given), ("output", given, taken)):
         ports = component.inputs if kind == "input" else component.outputs
         crossing = {name: other.pop(name) for name in ports if name in other and name not in own}
         if table := _make_flow_table(lookup, component, kind, own | crossing):
             yield table
-
-
-def _group_by_port(rows: Iterable[FlowRow]) -> dict[str, list[FlowRow]]:
-    flows: dict[str, list[FlowRow]] = {}
-    for row in rows:
-        flows.setdefault(row.port, []).append(row)
-    return flows
 
 
 def _make_flow_table(lookup: Lookup, component: Component, kind: str, flows: dict[str, list[FlowRow]]) -> Table | None:

@@ -328,8 +328,10 @@ def list_time_left(lookup: Lookup, activities: Sequence[Activity]) -> Iterator[I
             continue
         name = (Text(activity.id, code=True), Text(": ")) if len(activities) > 1 else ()
         rate = lookup.timing.analysis.paces[activity.id].rate
-        if rate.value:
-            most = chain_status.round_duration(NS_PER_SECOND / rate.value, ">")
+        # Runs of what is reentrant need not follow one another.
+        period = NS_PER_SECOND / rate.value if rate.value and activity.callback_group else None
+        if period:
+            most = chain_status.round_duration(period, ">")
             yield (*name, Text(f"less than {most} a run, at {value_format.display_rate(rate)}"))
         results = [result for result, _ in _list_chains_through(lookup, {activity.id}) if result.deadline]
         for result in results:
@@ -337,8 +339,8 @@ def list_time_left(lookup: Lookup, activities: Sequence[Activity]) -> Iterator[I
             rest = f", together with {join_words(others)}" if others and result.verdict == "open" else ""
             margin = chain_status.describe_margin(result) or "nobody knows how much is left"
             yield (*name, *_link_chain(lookup, result), Text(f": {margin}{rest}"))
-        if not rate.value and not results:
-            yield (*name, Text("nothing limits it: neither a rate nor a chain with a deadline"))
+        if not period and not results:
+            yield (*name, Text("nothing that is written limits it"))
 
 
 def list_reliance(lookup: Lookup, element: Node | Component, max_names: int = 8) -> Iterator[Inlines]:

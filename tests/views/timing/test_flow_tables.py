@@ -176,8 +176,13 @@ def test_what_rates_and_deadlines_leave_is_said_where_no_execution_time_is_writt
     assert left == {
         "camera": [],
         "stop": ["less than 333 ms a run, at 3 Hz", "Sees and stops 500 ms: <= 141 ms left, together with odometry"],
-        "odometry": ["nothing limits it: neither a rate nor a chain with a deadline"],
+        "odometry": ["nothing that is written limits it"],
     }
+    reentrant = _look_up(
+        tmp_path, text.replace("{implements: stop,", "{implements: stop, reentrant: true, threads: 2,")
+    )
+    found = list_time_left(reentrant, list_own_activities(reentrant, reentrant.architecture.nodes["stop"]))
+    assert list(map(_read, found)) == ["Sees and stops 500 ms: <= 141 ms left"]
     sections = {
         each.title: each.blocks for each in make_flow_sections(lookup, lookup.architecture.components["act.stop"])
     }
