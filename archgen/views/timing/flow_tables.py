@@ -353,8 +353,7 @@ def list_reliance(lookup: Lookup, element: Node | Component, max_names: int = 8)
         else (architecture.leaves_of(element.id), lookup.nodes_inside(element.id))
     )
     started = {element.id, *own, *(node.id for node in nodes)}
-    steps = lookup.find_fed(own)
-    links = {name: (inline_text.component_link(components[name]),) for name in steps}
+    fed = lookup.find_fed(own)
     inputs = [
         architecture.inputs[connection.input]
         for name in own
@@ -362,21 +361,31 @@ def list_reliance(lookup: Lookup, element: Node | Component, max_names: int = 8)
         for connection in lookup.readers_of.get(output.id, ())
     ]
     needing = {port.component for port in inputs if not port.optional}
-    free = dict.fromkeys(port.component for port in inputs if port.component in links)
+    free = dict.fromkeys(port.component for port in inputs if port.component in fed)
     groups = {
-        "Read from it": [link for name, link in links.items() if steps[name] == 1],
-        "Read from those": [link for name, link in links.items() if steps[name] > 1],
-        "Can do without it": [links[name] for name in free if name not in needing],
+        "Read from it": [name for name, steps in fed.items() if steps == 1],
+        "Read from those": [name for name, steps in fed.items() if steps > 1],
+        "Can do without it": [name for name in free if name not in needing],
         "Wait for it at the start": [
-            (inline_text.node_link(each),)
+            each.id
             for each in architecture.nodes.values()
             if each.start and not started.isdisjoint(each.start.list_awaited())
         ],
     }
-    for words, members in groups.items():
-        if members:
-            yield (Text(f"{words} ({len(members)}): "), *inline_text.join_first(members, max_names))
-    if links:
+    for words, names in groups.items():
+        # Of a thousand only those that are named need a link.
+        links = [
+            (
+                inline_text.component_link(components[each])
+                if each in components
+                else Text(each, f"node:{each}", code=True),
+            )
+            for each in names[:max_names]
+        ]
+        more = f" and {len(names) - max_names} more" if len(names) > max_names else ""
+        if names:
+            yield inline_text.to_inlines(f"{words} ({len(names)}): ", *inline_text.join_inlines(links), more)
+    if fed:
         command = " ".join(("archgen impact", *(f"--component {name}" for name in own)))
         yield (Text(command, code=True), Text(" says which deadlines, use cases and requirements rest on it"))
 
