@@ -24,8 +24,8 @@ if TYPE_CHECKING:
 def command(words: tuple[str, ...], form: str, project: Path | None) -> None:
     """Find what WORDS name, or what is said with them: ids, titles, topics, messages with their fields, texts, findings.
 
-    All words must stand in it, as wholes or as parts, in any case of letters. What is called so comes first. The exit
-    status is 1 where nothing is found. `archgen find pose base`
+    All words must stand in it, as wholes or as parts, in any case of letters; those of questions are left out ("who reads
+    the pose"). What is called so comes first. The exit status is 1 where nothing is found. `archgen find pose base`
     """
     from archgen.views.lookup import make_lookup
     from archgen.views.search import make_search_entries

@@ -14,7 +14,9 @@ if TYPE_CHECKING:
     from archgen.views.pages.report_outline import DetailLevel, ReportDocument
 
 _FILE_NAMES = {"deliverable": "report", "data-sheets": "data_sheets", "workbook": "workbook", "full": "report"}
-_MAX_FULL_COMPONENTS = 300
+_PAGES = {"full": 3, "data-sheets": 1}
+"""The pages that a document has of each component."""
+_MAX_PAGES = 900
 _FORMAT_BY_ENDING = {".docx": "docx", ".pdf": "pdf", ".xlsx": "xlsx"}
 
 
@@ -85,9 +87,10 @@ def command(  # noqa: PLR0913 - one for each option
         changes=command_support.compare_since(since, project, checked_project),
     )
     components = len(checked_project.architecture.components)
-    if document == "full" and select is None and components > _MAX_FULL_COMPONENTS:
+    pages = _PAGES.get(document, 0) * components
+    if select is None and pages > _MAX_PAGES:
         command_support.print_warning(
-            f"everything on {components} components fills some {3 * components:,} pages, which few programs open: `--document deliverable` has what is read, `--select` makes a part"
+            f"all that is said of {components:,} components fills some {pages:,} pages, which few programs open: `--document deliverable` has what is read, `--select` makes a part"
         )
     target = output or checked_project.output_folder / f"{_FILE_NAMES[document]}.{form}"
     with command_support.explain_write_errors():

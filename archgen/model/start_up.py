@@ -74,6 +74,10 @@ class StartUp:
     places: Mapping[str, Span] = field(default_factory=dict, compare=False, repr=False)
     """The spans of the values, by key."""
 
+    def list_awaited(self) -> tuple[str, ...]:
+        """Return the ids of what is to be there before it, and of what brings it into its state."""
+        return tuple(target.id for target in (*self.after, *filter(None, (self.by,))))
+
     @property
     def wanted_state(self) -> LifecycleState | None:
         """The state that a lifecycle node is brought into; None where nobody says so."""

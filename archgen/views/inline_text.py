@@ -35,12 +35,17 @@ def share_text(text: str, ref: str | None = None, *, code: bool = False) -> Text
     return Text(text, ref=ref, code=code)
 
 
-def to_inlines(*parts: str | Text) -> Inlines:
-    """Turn strings and ready `Text` runs into one sequence of inlines."""
+def to_inlines(*parts: str | Text | None) -> Inlines:
+    """Turn strings and ready `Text` runs into one sequence of inlines, without what is empty or None."""
     if len(parts) == 1:  # most have one
         (part,) = parts
-        return (share_text(part) if isinstance(part, str) else part,)
-    return tuple([share_text(part) if isinstance(part, str) else part for part in parts])
+        return ((share_text(part) if isinstance(part, str) else part),) if part else ()
+    return tuple([share_text(part) if isinstance(part, str) else part for part in parts if part])
+
+
+def to_code(text: str | None) -> Inlines:
+    """Return a text as code, nothing for an empty one."""
+    return (share_text(text, code=True),) if text else ()
 
 
 def message_to_inlines(message: str, *, muted: bool = False) -> Inlines:
@@ -86,10 +91,9 @@ def join_first(items: Sequence[Inlines], limit: int = 3) -> Inlines:
 def join_lines(items: Iterable[Inlines]) -> Inlines:
     """Put each run of inlines on a line of its own."""
     result: list[Text] = []
-    for index, run in enumerate(items):
-        # A break belongs to the run that follows it, so each item needs at least one run of text.
-        first, *other_parts = run
-        result += [replace(first, line_break=True) if index else first, *other_parts]
+    # A break belongs to the run that follows it.
+    for first, *other_parts in filter(None, items):
+        result += [replace(first, line_break=True) if result else first, *other_parts]
     return tuple(result)
 
 
@@ -225,9 +229,10 @@ def list_qos_settings(qos: Qos) -> list[str]:
     return [part for part in parts if part]
 
 
-def format_qos_cell(qos: Qos) -> Inlines:
-    """Describe a quality of service for a table cell; a default that nobody wrote is muted."""
-    return (Text(format_qos(qos)),) if qos.written else (Text("default", muted=True),)
+def format_qos_cell(endpoint: Endpoint) -> Inlines:
+    """Describe the quality of service of a topic's end for a table cell; a default that nobody wrote is muted."""
+    has_qos = endpoint.flow == "topic" and endpoint.medium == ROS
+    return (Text(format_qos(endpoint.qos), muted=not endpoint.qos.written),) if has_qos else ()
 
 
 def cut_text(text: str, characters: int) -> str:
@@ -253,7 +258,7 @@ def render_marks(inlines: Inlines) -> Inlines:
 
 def read_marks(markdown: str) -> Inlines:
     """Return a line of Markdown as runs of text."""
-    return render_marks((share_text(markdown),))
+    return render_marks(to_inlines(markdown))
 
 
 def strip_marks(markdown: str) -> str:

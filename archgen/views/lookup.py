@@ -13,6 +13,8 @@ from archgen.model.architecture import Architecture, Chain
 from archgen.model.component import Component, Connection, Input, Output
 from archgen.model.component_nesting import find_component, list_members, list_surrounding, list_written_connections
 from archgen.model.coordinate_frames import Frame
+from archgen.model.flow_graph import FlowGraph, build_component_graph
+from archgen.model.graph_search import find_reachable
 from archgen.model.known_interfaces import InterfaceField
 from archgen.model.message_types import ConceptualType
 from archgen.model.node import Endpoint, Node, Topic
@@ -88,6 +90,8 @@ class Lookup:
     # Computed when somebody asks: most views show no use case.
     steps: UseCaseSteps = field(kw_only=True, compare=False, repr=False)
     """The steps of use cases, with what they run along."""
+    component_flows: FlowGraph = field(kw_only=True, compare=False, repr=False)
+    """Which components read from which."""
     type_texts: TypeTexts = field(kw_only=True, compare=False, repr=False)
     """Where the texts of component types are."""
     timing: TimingLookup | None = None
@@ -140,6 +144,11 @@ class Lookup:
         leaves = self.architecture.leaves_of(component_id)
         nodes = {node.id: node for leaf in leaves for node in self.nodes_of.get(leaf, ())}
         return tuple(nodes.values())
+
+    def find_fed(self, component_ids: Iterable[str]) -> dict[str, int]:
+        """Return the other components that some feed in the end, nearest first, each with its number of steps."""
+        steps = find_reachable(self.component_flows.successors, component_ids)
+        return {name: count for name, count in steps.items() if count}
 
     def shown_nodes(self) -> list[Node]:
         """Return the shown nodes, in order."""
@@ -200,6 +209,7 @@ def make_lookup(
         group_hues={group: hue for hue, group in enumerate(architecture.groups)},
         message_size=message_sizes.make_size_query(architecture),
         steps=UseCaseSteps(architecture),
+        component_flows=build_component_graph(architecture),
         type_texts=TypeTexts(architecture),
         timing=timing_lookup,
     )

@@ -223,8 +223,13 @@ class Facts:
 
 
 def show_facts(facts: Iterable[Fact], without: Collection[str] = ()) -> Facts:
-    """Return facts as a block, without those of some keys."""
-    return Facts(tuple((fact.title, fact.value) for fact in facts if fact.key not in without))
+    """Return facts as a block, without those of some keys, and those of which nothing is known."""
+    return show_known((fact.title, fact.value) for fact in facts if fact.key not in without)
+
+
+def show_known(facts: Iterable[tuple[str, Inlines]]) -> Facts:
+    """Return facts as a block, without those of which nothing is known."""
+    return Facts(tuple(fact for fact in facts if fact[1]))
 
 
 Block = Paragraph | Markdown | Figure | Bullets | Facts | Table

@@ -108,5 +108,9 @@ def test_words_find_names_before_texts(run: Run, tmp_path: Path) -> None:
     assert (ran.status, names[0]) == (0, "Ear")
     assert any("Camera (sense.eye)" in line for line in ran.out.splitlines()[1:])
     assert "Camera" in run("find", "hears", "sees", "-C", folder).out
+    # Words of questions count where nothing else is asked for.
+    assert run("find", "who reads the sound", "-C", folder).out == run("find", "sound", "-C", folder).out != ""
+    assert "Sees what an ear hears" not in run("find", "what", "-C", folder).out
+    assert "Camera" in run("find", "what", "-C", folder).out
     nothing = run("find", "nose", "-C", folder)
     assert (nothing.status, nothing.out) == (1, "nothing is called or described so\n")

@@ -68,8 +68,9 @@ def test_it_says_what_changed_since_a_version(run: Run, lamp: Path) -> None:
 def test_of_a_large_project_everything_in_one_document_comes_with_advice(
     run: Run, lamp: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(report_command, "_MAX_FULL_COMPONENTS", 1)
-    advice = "warning: everything on 2 components fills some 6 pages"
-    assert advice in run("report", "--document", "full", lamp).err
+    monkeypatch.setattr(report_command, "_MAX_PAGES", 1)
+    advice = "warning: all that is said of 2 components fills some "
+    assert f"{advice}6 pages" in run("report", "--document", "full", lamp).err
+    assert f"{advice}2 pages" in run("report", "--document", "data-sheets", lamp).err
     assert advice not in run("report", lamp).err
     assert advice not in run("report", "--document", "full", "--select", "owner:a", lamp).err

@@ -49,8 +49,8 @@ def test_what_one_declares_and_the_other_sets_or_may_call(tmp_path: Path) -> Non
     Nobody calls `ask`: Acme takes nothing from it.
     """
     assert list_settings(agree(tmp_path)) == [
-        "level | Plain | Acme |  |  | 1 to 5 | plain: 4",
-        "rate | Back | Acme |  | Hz | 1 to 50 | Back: 40",
+        "level | Plain | Acme |  | 1 to 5 | plain: 4",
+        "rate | Back | Acme | Hz | 1 to 50 | Back: 40",
         "reset | Front | Acme |  | Ok | ",
         "stop | Plain | Acme | hard: bool |  | synchronous",
     ]

@@ -86,7 +86,9 @@ def test_a_node_and_its_topic_name_each_other(lookup: Lookup) -> None:
     node = told(make_node_card(lookup, lookup.architecture.nodes["n"]))
     assert (node["ROS name"], node["host"], node["package"]) == ("/n", "pc", "p")
     (topic,) = (each for each in lookup.architecture.topics.values() if each.writers)
-    assert node["topics, services and actions"] == (f"publishes {topic.name} (sensor_msgs/msg/Image)",)
+    assert node["topics, services and actions"] == (
+        f"publishes {topic.name} (sensor_msgs/msg/Image); default: reliable, depth 10",
+    )
     card = make_topic_card(lookup, topic)
     assert card.kind == "topic"
     assert [line.partition(" ")[0] for line in told(card)["from"]] == ["n"]  # type: ignore[attr-defined]

@@ -101,7 +101,7 @@ def test_the_card_of_a_node_lists_what_it_uses(lookup: Lookup) -> None:
     assert find_elements(lookup, "drone")
     lists = dict(make_card(lookup, "node", "drone").lists)
     assert set(lists["topics, services and actions"]) == {
-        "publishes /air/drone/image (sensor_msgs/msg/Image)",
+        "publishes /air/drone/image (sensor_msgs/msg/Image); default: reliable, depth 10",
         "publishes fleet/pose (MQTT: Pose)",
     }
 

@@ -42,7 +42,7 @@ def test_the_card_of_a_node(tmp_path: Path) -> None:
         "clock:          simulated, by use_sim_time: true (archgen.yaml:2)",
         "state:          inactive, by state: inactive (archgen.yaml:13)",
         (
-            "publishes /safety (std_msgs/msg/Bool), QoS overridden, if its program allows that, by "
+            "publishes /safety (std_msgs/msg/Bool); default: best effort, depth 10, overridden, if its program allows that, by "
             "qos_overrides./safety.publisher.reliability (archgen.yaml:14)"
         ),
     ]

@@ -138,15 +138,18 @@ _TYPE_SIZE = 8.0
 _LEAST_SIZE = 6.5
 """The smallest type on paper: below it the next larger sheet is tried, and what is still smaller is left out."""
 _LEAST_SCALE = _LEAST_SIZE / _TYPE_SIZE
+_EDGE = 30.0
+"""Points from the edge of the paper up to which a picture may reach over the margins, before the page turns for it."""
 _CAPTION_HEIGHT = 60.0
 """Points kept free below a picture for its caption."""
 
 
 @dataclass(frozen=True, slots=True)
 class PictureRun:
-    """A picture as a run, and its height in points."""
+    """A picture as a run, and its size in points."""
 
     xml: str
+    width: float
     height: float
 
 
@@ -178,7 +181,7 @@ def write_figure(writer: DocxWriter, shape: Figure) -> Iterator[FlowPiece]:
     def draw_piece(share: float) -> FlowPiece:
         size = (width * share, height * share)
         run = format_picture(writer, (raster, drawing), size, shape.alt or shape.caption)
-        piece = write_picture_paragraph(writer, PictureRun(run, size[1]), sheet, keep_next=shape.numbered)
+        piece = write_picture_paragraph(writer, PictureRun(run, *size), sheet, keep_next=shape.numbered)
         return replace(piece, picture=scalable_picture)
 
     least = _LEAST_SCALE / scale
@@ -199,12 +202,14 @@ def write_figure(writer: DocxWriter, shape: Figure) -> Iterator[FlowPiece]:
 def choose_sheet(writer: DocxWriter, width: float, height: float) -> tuple[PaperSheet | None, float]:
     """Return the sheet for a picture (None for the usual one) and its scale.
 
-    It is the usual one while its type can be read there, else a turned one, else the large one on which it is largest. Where
-    it can be read on none, the scale is 0.
+    It is the usual one while its type can be read there, over the margins if need be, else a turned one, else the large one
+    on which it is largest. Where it can be read on none, the scale is 0.
     """
-    paper = writer.paper
-    sheets: tuple[PaperSheet | None, ...] = (None, paper.wide, *paper.large)
-    scales = ((each, _scale_to_sheet(each or paper.base, width, height)) for each in sheets)
+    paper, base = writer.paper, writer.paper.base
+    over = max(0.0, min(base.left, base.right) - _EDGE)
+    over_margins = replace(base, left=base.left - over, right=base.right - over)
+    sheets = ((None, base), (None, over_margins), *((each, each) for each in (paper.wide, *paper.large)))
+    scales = ((sheet, _scale_to_sheet(area, width, height)) for sheet, area in sheets)
     return next((found for found in scales if found[1] >= _LEAST_SCALE), (None, 0.0))
 
 
@@ -214,6 +219,11 @@ def write_picture_paragraph(
     """Write a paragraph that holds a picture alone."""
     face = writer.styles.find_face("Figure")
     properties = "" if keep_next else '<w:keepNext w:val="0"/>'
+    over = picture.width - (sheet or writer.paper.base).text_width
+    if over > 0:
+        properties += '<w:ind w:left="{0}" w:right="{0}"/>'.format(
+            -round(10 * over)
+        )  # half at each side, in twentieths
     xml = format_paragraph(writer.styles.find_style_id("Figure"), picture.xml, properties)
     # Two points are what a line has below the foot of a picture.
     return FlowPiece(xml, (picture.height + 2,), face.before, face.after, keep_next=keep_next, sheet=sheet)
@@ -237,7 +247,7 @@ def read_chapter_picture(writer: DocxWriter, path: str, alt: str) -> PictureRun 
         )
     else:
         relations = (writer.relate_image(f"chapter:{path}", image.kind, data), "")
-    return PictureRun(format_picture(writer, relations, size, alt or path), size[1])
+    return PictureRun(format_picture(writer, relations, size, alt or path), *size)
 
 
 def _read_raster(writer: DocxWriter, path: str, size: tuple[float, float]) -> bytes:

@@ -8,7 +8,9 @@ from collections.abc import Iterable, Iterator, Sequence
 from archgen.emit.site import status_marks
 from archgen.emit.site.html_text import replace_forbidden
 from archgen.emit.site.page_links import SiteLinks
+from archgen.grouping import group_pairs
 from archgen.views.explorer.map_shapes import LINKED_TABLES, ExplorerMap, Row
+from archgen.views.search.entry_ranking import QUESTION_WORDS
 from archgen.views.search.search_entry import SearchEntry
 from archgen.views.shapes import Page, split_anchor
 
@@ -121,9 +123,7 @@ _Row = tuple[SearchEntry, str]
 def build_search_files(entries: Iterable[SearchEntry], links: SiteLinks) -> Iterator[tuple[str, bytes]]:
     """Yield the files of the index. Entries that lead nowhere in this site are left out."""
     rows = [(entry, address) for entry in entries if (address := _find_address(entry, links)) is not None]
-    rows_by_kind: dict[str, list[_Row]] = {}
-    for row in rows:
-        rows_by_kind.setdefault(row[0].kind, []).append(row)
+    rows_by_kind = group_pairs((row[0].kind, row) for row in rows)
     scripts = [*_write_names(rows_by_kind), *_write_texts(rows_by_kind)]
     index = {
         "parts": [name for name, _ in scripts],
@@ -133,6 +133,7 @@ def build_search_files(entries: Iterable[SearchEntry], links: SiteLinks) -> Iter
             for entry, address in rows_by_kind.get("finding", ())[:_EMPTY_BOX_FINDINGS]
         ],
         "examples": _choose_examples(rows),
+        "questionWords": QUESTION_WORDS,
     }
     yield _make_script("index", ("index", index))
     yield from (_make_script(name, call) for name, call in scripts)

@@ -123,7 +123,7 @@ def _open_term_runs(open_terms: Sequence[str], contradiction_count: int, late_ch
     phrases = [", ".join(open_terms)] if open_terms else []
     phrases += [inline_text.count_noun(contradiction_count, "contradiction")] if contradiction_count else []
     phrases += [inline_text.count_noun(late_chain_count, "late chain")] if late_chain_count else []
-    return inline_text.to_inlines("; ".join(phrases)) if phrases else ()
+    return inline_text.to_inlines("; ".join(phrases))
 
 
 def write_change_log(content: AgreementContent) -> Iterator[Section]:
@@ -316,8 +316,8 @@ def _partners_section(content: AgreementContent) -> Section:
         rows.append(
             (
                 inline_text.to_inlines(Text(partner.title, strong=True)),
-                inline_text.to_inlines(" ".join(partner.description.split())) if partner.description else (),
-                inline_text.to_inlines(partner.contact) if partner.contact else (),
+                inline_text.to_inlines(" ".join((partner.description or "").split())),
+                inline_text.to_inlines(partner.contact),
                 inline_text.to_inlines(inline_text.count_noun(given_count, "interface")),
             )
         )

@@ -68,7 +68,7 @@ def _chain_rows(content: AgreementContent, chain_id: str, budget: SharedBudget) 
         yield (
             () if number else _chain_cell(content, chain_id, budget),
             inline_text.to_inlines(join_owner_titles(content.lookup, share.owners)),
-            inline_text.to_inlines(Text(share.activity, code=True)),
+            inline_text.to_code(share.activity),
             inline_text.to_inlines(value_format.display_duration(TimingValue(share.written))),
             # Exact, so that it still keeps the deadline.
             inline_text.to_inlines(figure_wording.write_exact_duration(share.may_take)),

@@ -10,7 +10,7 @@ from archgen.model.agreed_terms import RULES
 from archgen.model.partner_interfaces import PartnerPair
 from archgen.views import inline_text
 from archgen.views.agreement.interface_terms import InterfaceTerms
-from archgen.views.shapes import Inlines, Table, Text, make_columns
+from archgen.views.shapes import Table, make_columns
 
 if TYPE_CHECKING:  # not for each site: comparisons are large, and most are compared with nothing
     from archgen.views.agreement.plain_terms import PlainTerm
@@ -71,16 +71,12 @@ def write_signature_table(tags: tuple[SignedTag, ...]) -> Table:
     columns = make_columns(("Recorded as", 1.4), ("On", 0.6), ("By", 0.8), ("Commit", 0.6), ("Words", 1.4))
     rows = tuple(
         (
-            inline_text.to_inlines(Text(tag.name, code=True)),
-            _text_cell(tag.date),
-            _text_cell(tag.tagger),
-            inline_text.to_inlines(Text(tag.commit, code=True)),
-            _text_cell(tag.subject),
+            inline_text.to_code(tag.name),
+            inline_text.to_inlines(tag.date),
+            inline_text.to_inlines(tag.tagger),
+            inline_text.to_code(tag.commit),
+            inline_text.to_inlines(tag.subject),
         )
         for tag in tags
     )
     return Table("table:signed", "What was signed before", columns, rows, numbered=False)
-
-
-def _text_cell(text: str) -> Inlines:
-    return inline_text.to_inlines(text) if text else ()

@@ -57,7 +57,7 @@ class WordRow:
     def inlines(self) -> Inlines:
         """Return it as lines, what is not said muted."""
         lines = [inline_text.message_to_inlines(each) for each in (self.written, *self.derived) if each]
-        return inline_text.join_lines([*lines, *([(Text(self.unsaid, muted=True),)] if self.unsaid else [])])
+        return inline_text.join_lines([*lines, (Text(self.unsaid, muted=True),) if self.unsaid else ()])
 
 
 def list_word_rows(lookup: Lookup, terms: InterfaceTerms, steps: Mapping[str, StartStep] | None) -> Iterator[WordRow]:
@@ -267,7 +267,7 @@ class SectionWriter:
             else inline_text.to_inlines(Text("nobody", muted=True)),
             (*component, *port),
             self._node_runs(end.node) if end.node else undecided,
-            inline_text.to_inlines(end.qos) if end.qos else (),
+            inline_text.to_inlines(end.qos),
         )
 
     def _node_runs(self, name: str) -> Inlines:

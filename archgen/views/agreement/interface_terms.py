@@ -224,7 +224,7 @@ def _list_facts(lookup: Lookup, interface: PartnerInterface) -> Iterator[Fact]:
     if interface.output and interface.output.description:
         yield Fact("meaning", "Meaning", inline_text.to_inlines(interface.output.description))
     if interface.output and (frame_name := lookup.architecture.frame_of(interface.output)):
-        yield Fact("", "Frame", inline_text.to_inlines(Text(frame_name, code=True)))
+        yield Fact("", "Frame", inline_text.to_code(frame_name))
     yield from _list_declared_properties(lookup, interface)
     if interface.flow != "physical" and not interface.medium:
         yield from _list_message_facts(lookup, interface)

@@ -93,9 +93,9 @@ def field_table(message: str, field_rows: tuple[FieldRow, ...]) -> Table:
     cells = tuple(
         (
             *((inline_text.to_inlines(row.part),) if has_parts else ()),
-            inline_text.to_inlines(Text(row.name, code=True)),
+            inline_text.to_code(row.name),
             _type_cell(row),
-            *((inline_text.to_inlines(row.meaning) if row.meaning else (),) if has_meanings else ()),
+            *((inline_text.to_inlines(row.meaning),) if has_meanings else ()),
         )
         for row in field_rows
     )

@@ -54,8 +54,8 @@ def _make_parameter_table(content: AgreementContent, marks: Mapping[str, Text]) 
             (Text(shared.parameter.name, code=True),),
             (inline_text.component_link(shared.component),),
             inline_text.to_inlines(join_owner_titles(content.lookup, [shared.giver])),
-            inline_text.to_inlines(shared.parameter.type or ""),
-            inline_text.to_inlines(shared.parameter.unit or ""),
+            inline_text.to_inlines(shared.parameter.type),
+            inline_text.to_inlines(shared.parameter.unit),
             inline_text.to_inlines(describe_limits(shared.parameter)),
             inline_text.join_lines(_describe_setter(content, each) for each in shared.setters),
             _mark_cell(marks, _name_parameter(shared)),
@@ -94,7 +94,7 @@ def _make_operation_table(content: AgreementContent, marks: Mapping[str, Text]) 
             inline_text.to_inlines(join_owner_titles(content.lookup, [shared.giver])),
             inline_text.to_inlines(describe_types(shared.operation.request or "")),
             inline_text.to_inlines(describe_types(shared.operation.response or "")),
-            inline_text.to_inlines(shared.operation.call or ""),
+            inline_text.to_inlines(shared.operation.call),
             _mark_cell(marks, _name_operation(shared)),
         )
         for shared in _list_operations(content.lookup.architecture, content.pair)

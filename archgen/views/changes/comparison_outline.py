@@ -51,8 +51,8 @@ def write_comparison_outline(document: ComparisonDocument) -> Outline:
 
 
 def _document_facts(document: ComparisonDocument) -> Iterator[tuple[str, Inlines]]:
-    yield "From", inline_text.to_inlines(Text(document.before.name, code=True))
-    yield "To", inline_text.to_inlines(Text(document.after.name, code=True))
+    yield "From", inline_text.to_code(document.before.name)
+    yield "To", inline_text.to_code(document.after.name)
     yield "Changes", inline_text.to_inlines("none" if document.is_empty else document.counts)
     if document.broken_partners:
         runs = text_runs(", ".join(document.broken_partners))
@@ -146,7 +146,7 @@ def _chain_section(chain_rows: Sequence[ChainRow]) -> Section | None:
         return None
     rows = tuple(
         (
-            inline_text.to_inlines(Text(row.id, code=True)),
+            inline_text.to_code(row.id),
             *(inline_text.to_inlines(cell) for cell in (row.before, row.after, row.growth, row.deadline)),
             inline_text.to_inlines(Text(row.verdict, strong=True)),
             text_runs(row.reason),
@@ -167,7 +167,7 @@ def _findings_section(group: FindingGroup) -> Section:
     rows = tuple(
         (
             inline_text.to_inlines(str(finding.effective_severity)),
-            inline_text.to_inlines(Text(finding.rule, code=True)),
+            inline_text.to_code(finding.rule),
             text_runs(finding.message),
             inline_text.to_inlines(Text(str(finding.span), code=True)) if finding.span.file else (),
         )

@@ -25,10 +25,10 @@ def make_component_type_table(lookup: Lookup, anchor: str = "table:component_typ
     rows = tuple(
         (
             (type_page_link(each), *write_badges(each)),
-            _make_code_cell(each.library),
+            inline_text.to_code(each.library),
             describe_purpose(each.functionality),
             _make_base_cell(lookup, each),
-            _make_code_cell(", ".join(each.generic)),
+            inline_text.to_code(", ".join(each.generic)),
             (Text(str(count), sort_number=str(count)),),
         )
         for each in architecture.component_types.values()
@@ -64,7 +64,7 @@ def make_type_blocks(lookup: Lookup, component_type: ComponentType) -> tuple[Blo
 def _list_facts(lookup: Lookup, component_type: ComponentType) -> Iterable[tuple[str, Inlines]]:
     architecture = lookup.architecture
     if component_type.library:
-        yield "Library", _make_code_cell(component_type.library)
+        yield "Library", inline_text.to_code(component_type.library)
     if component_type.owner:
         yield "Owner", inline_text.owner_links(architecture, [component_type.owner])
     if component_type.base:
@@ -87,14 +87,10 @@ def _list_facts(lookup: Lookup, component_type: ComponentType) -> Iterable[tuple
     yield "Instances", inline_text.to_inlines(", ".join(filter(None, (count, words))))
 
 
-def _make_code_cell(text: str | None) -> Inlines:
-    return (Text(text, code=True),) if text else ()
-
-
 def _make_base_cell(lookup: Lookup, component_type: ComponentType) -> Inlines:
     base = lookup.architecture.component_types.get(component_type.base_name)
     if base is None:
-        return inline_text.to_inlines(component_type.base) if component_type.base else ()
+        return inline_text.to_inlines(component_type.base)
     return (type_page_link(base),)
 
 
@@ -102,7 +98,7 @@ def _make_port_table(component_type: ComponentType) -> list[Block]:
     rows = tuple(
         (
             inline_text.to_inlines(use),
-            inline_text.to_inlines(Text(name, code=True)),
+            inline_text.to_code(name),
             _make_type_cell(component_type, type_name, has_inside=use == "out" and bool(component_type.components)),
         )
         for use, ports in (("in", component_type.inputs), ("out", component_type.outputs))
@@ -125,7 +121,7 @@ def _make_frame_table(component_type: ComponentType) -> list[Block]:
     """Return the table of the frames, with their names as the type writes them: each instance has its own."""
     rows = tuple(
         (
-            inline_text.to_inlines(Text(frame.id, code=True)),
+            inline_text.to_code(frame.id),
             inline_text.to_inlines(Text(frame.parent, code=True) if frame.parent else Text("a root", muted=True)),
             inline_text.to_inlines("static") if frame.static else inline_text.quantity_to_inlines(frame.rate),
         )

@@ -19,7 +19,6 @@ from archgen.views.timing import element_timing
 _USE_ORDER = {"subscribes": 0, "publishes": 1, "serves": 2, "calls": 3}
 """Endpoints are listed in the direction of the data: inputs, outputs, then services and actions."""
 _LANGUAGE_TITLES = {"python": "Python", "cpp": "C++"}
-_USE_LABELS = {"subscribes": "subscribes", "publishes": "publishes", "serves": "serves", "calls": "calls"}
 
 
 def make_implementation_blocks(lookup: Lookup, component_id: str) -> tuple[Block, ...]:
@@ -81,12 +80,12 @@ def list_node_facts(lookup: Lookup, node: Node) -> list[Fact]:
             "Requirements",
             inline_text.join_inlines(inline_text.requirement_link(architecture, each) for each in requirement_ids),
         ),
-        Fact("ros_name", "ROS name", () if node.is_program else _to_code(node.full_name)),
+        Fact("ros_name", "ROS name", () if node.is_program else inline_text.to_code(node.full_name)),
         Fact("kind", "Kind, status", inline_text.to_inlines(f"{kind}, ", *inline_text.value_or_unknown(node.status))),
         Fact("package", "Package", (*inline_text.value_or_unknown(node.package), *_program_parts(node))),
-        Fact("", "Command", _to_code(shlex.join(node.command))),
-        Fact("", "Arguments", _to_code(shlex.join(node.arguments))),
-        Fact("", "Language", inline_text.to_inlines(_LANGUAGE_TITLES[node.language]) if node.language else ()),
+        Fact("", "Command", inline_text.to_code(shlex.join(node.command))),
+        Fact("", "Arguments", inline_text.to_code(shlex.join(node.arguments))),
+        Fact("", "Language", inline_text.to_inlines(_LANGUAGE_TITLES.get(node.language or ""))),
         Fact("", "Remaps", _remap_facts(lookup, node)),
         Fact("", "Start", (Text(words), Text(" ("), Text("the plan", ref="page:start_up"), Text(")")) if words else ()),
         *(
@@ -111,11 +110,7 @@ def list_node_facts(lookup: Lookup, node: Node) -> list[Fact]:
         sentence = timing_words.format_timing_sentence(timing)
         facts.append(Fact("activity" if is_one_of_several else "timing", title, inline_text.to_inlines(sentence)))
     facts += element_timing.make_node_facts(lookup, node)
-    return [fact for fact in facts if any(run.text for run in fact.value)]
-
-
-def _to_code(text: str) -> Inlines:
-    return (Text(text, code=True),) if text else ()
+    return [fact for fact in facts if fact.value]
 
 
 def _remap_facts(lookup: Lookup, node: Node) -> Inlines:
@@ -154,11 +149,11 @@ def _location_cell(lookup: Lookup, node: Node) -> Inlines:
 def _endpoint_table(node: Node, endpoints: tuple[Endpoint, ...]) -> Table:
     rows = tuple(
         (
-            inline_text.to_inlines(_USE_LABELS[endpoint.use]),
+            inline_text.to_inlines(endpoint.use),
             (*inline_text.name_carrier(endpoint), *((Text(" internal", muted=True),) if endpoint.internal else ())),
             _name_content(endpoint),
-            inline_text.to_inlines(Text(endpoint.port.rsplit(".", 1)[-1], code=True)) if endpoint.port else (),
-            _qos_content(endpoint) if endpoint.flow == "topic" and endpoint.medium == ROS else (),
+            inline_text.to_code((endpoint.port or "").rpartition(".")[2]),
+            _qos_content(endpoint),
         )
         for endpoint in sorted(endpoints, key=lambda e: _USE_ORDER[e.use])
     )
@@ -169,7 +164,7 @@ def _endpoint_table(node: Node, endpoints: tuple[Endpoint, ...]) -> Table:
 def _qos_content(endpoint: Endpoint) -> Inlines:
     words = describe_override(endpoint)
     remark = (Text(f" {words}", muted=True),) if words else ()
-    return (*inline_text.format_qos_cell(endpoint.qos), *remark)
+    return (*inline_text.format_qos_cell(endpoint), *remark)
 
 
 def _name_content(endpoint: Endpoint) -> Inlines:

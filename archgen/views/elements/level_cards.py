@@ -22,7 +22,7 @@ from archgen.views.elements.parameter_blocks import list_effective_lines, list_o
 from archgen.views.lookup import Lookup
 from archgen.views.start_phrases import describe_override, describe_start, list_running_facts
 from archgen.views.timing.element_timing import make_whole_fact
-from archgen.views.timing.flow_tables import list_activities, list_flow_lines
+from archgen.views.timing.flow_tables import list_flow_lines
 
 
 def make_group_card(_lookup: Lookup, group: Group) -> ElementCard:
@@ -52,9 +52,7 @@ def make_component_card(lookup: Lookup, component: Component) -> ElementCard:
     lists = (
         ("inputs", inputs),
         ("outputs", outputs),
-        *drop_empty_lists(
-            *list_flow_lines(lookup, list_activities(lookup, lookup.nodes_of.get(component.id, ()), component.id))
-        ),
+        *drop_empty_lists(*list_flow_lines(lookup, component)),
         *_list_setting_lists(component),
         ("nodes", nodes),
         ("findings", tuple(list_finding_lines(lookup, component.id))),
@@ -225,12 +223,12 @@ def make_node_card(lookup: Lookup, node: Node) -> ElementCard:
     ]
     lines = tuple(
         f"{inline_text.ENDPOINT_USE_WORDS[endpoint.use]} {_describe_endpoint(endpoint)}{_describe_move(endpoint)}"
-        f"{_tell_override(endpoint)}"
+        f"{_tell_qos(endpoint)}"
         for endpoint in endpoints
     )
     lists = (
         ("topics, services and actions", lines),
-        *drop_empty_lists(*list_flow_lines(lookup, list_activities(lookup, (node,)))),
+        *drop_empty_lists(*list_flow_lines(lookup, node)),
         *drop_empty_lists(("parameters", tuple(list_effective_lines(lookup, node)))),
         ("findings", tuple(list_finding_lines(lookup, node.id))),
     )
@@ -244,9 +242,11 @@ def _describe_endpoint(endpoint: Endpoint) -> str:
     return f"{name_on_medium(endpoint)} ({name_medium(endpoint.medium)}: {endpoint.type or '?'})"
 
 
-def _tell_override(endpoint: Endpoint) -> str:
-    words = describe_override(endpoint)
-    return f", QoS {words}" if words else ""
+def _tell_qos(endpoint: Endpoint) -> str:
+    """Return the quality of service of a topic's end, also where nobody wrote one, with what overrides it."""
+    if endpoint.flow != "topic" or endpoint.medium != ROS:
+        return ""
+    return ", ".join(filter(None, (f"; {inline_text.format_qos(endpoint.qos)}", describe_override(endpoint))))
 
 
 def _describe_move(endpoint: Endpoint) -> str:

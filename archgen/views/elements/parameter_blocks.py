@@ -13,7 +13,7 @@ from archgen.model.parameter_values import (
     describe_origin,
     find_effective_parameters,
 )
-from archgen.views import inline_text
+from archgen.views.inline_text import to_code, to_inlines, topic_link
 from archgen.views.lookup import Lookup
 from archgen.views.shapes import Block, Column, Inlines, Table, Text, drop_empty_columns, make_columns
 
@@ -36,19 +36,20 @@ def list_equal_settings(component: Component, component_type: ComponentType) -> 
 def _make_parameter_table(component: Component | ComponentType) -> Table | None:
     rows = tuple(
         (
-            _to_code(each.name),
-            _to_code(each.type),
-            _to_code(format_parameter(each.value))
+            to_code(each.name),
+            to_code(each.type),
+            to_code(format_parameter(each.value))
             if each.value is not None
-            else _to_text(describe_missing_value(each)),
-            _to_text(each.unit),
-            _to_text(describe_limits(each)),
-            _to_text(_describe_remarks(each)),
+            else to_inlines(describe_missing_value(each)),
+            to_inlines(each.unit),
+            to_inlines(describe_limits(each)),
+            to_inlines(_describe_remarks(each)),
         )
         for each in component.parameters.values()
     )
     rows += tuple(
-        (_to_code(_format_open_set(name)), (), (), (), _to_text("any"), _to_text("open set")) for name in component.open
+        (to_code(_format_open_set(name)), (), (), (), to_inlines("any"), to_inlines("open set"))
+        for name in component.open
     )
     columns = make_columns(("Parameter", 1.3), ("Type", 0.7), "Value", ("Unit", 0.5), "May be", ("Remarks", 1.6))
     caption = f"{component.title}: parameters"
@@ -58,10 +59,10 @@ def _make_parameter_table(component: Component | ComponentType) -> Table | None:
 def _make_operation_table(component: Component | ComponentType) -> Table | None:
     rows = tuple(
         (
-            _to_code(name),
+            to_code(name),
             _type_cell(each.request),
             _type_cell(each.response),
-            _to_text("; ".join(filter(None, (each.call, each.visibility, _on_one_line(each.description))))),
+            to_inlines("; ".join(filter(None, (each.call, each.visibility, _on_one_line(each.description))))),
         )
         for name, each in component.operations.items()
     )
@@ -78,7 +79,7 @@ def _place_of(component: Component | ComponentType) -> str:
 
 
 def _type_cell(types: str | Mapping[str, str] | None) -> Inlines:
-    return () if types is None else inline_text.to_inlines(describe_types(types))
+    return () if types is None else to_inlines(describe_types(types))
 
 
 def describe_types(types: str | Mapping[str, str]) -> str:
@@ -110,23 +111,15 @@ def _on_one_line(text: str | None) -> str:
     return " ".join((text or "").split())
 
 
-def _to_code(text: str | None) -> Inlines:
-    return inline_text.to_inlines(Text(text, code=True)) if text else ()
-
-
-def _to_text(text: str | None) -> Inlines:
-    return inline_text.to_inlines(text) if text else ()
-
-
 def make_effective_table(lookup: Lookup, node: Node) -> Table | None:
     """List the parameters of a node with the values that count; where they come from, if not all are the node's own."""
     parameters = find_effective_parameters(lookup.architecture, node)
     shows_origin = any(each.origin != "node" for each in parameters.values())
     rows = tuple(
         (
-            _to_code(each.name),
-            inline_text.to_inlines(_value_run(lookup, node, each)),
-            *((_to_text(name_origin(each)),) if shows_origin else ()),
+            to_code(each.name),
+            to_inlines(_value_run(lookup, node, each)),
+            *((to_inlines(name_origin(each)),) if shows_origin else ()),
         )
         for each in parameters.values()
     )
@@ -139,7 +132,7 @@ def _value_run(lookup: Lookup, node: Node, parameter: EffectiveParameter) -> Tex
     text = describe_value_text(node, parameter)
     if parameter.origin == "none":
         return Text(text, muted=True)
-    return inline_text.topic_link(text) if text in lookup.architecture.topics else Text(text, code=True)
+    return topic_link(text) if text in lookup.architecture.topics else Text(text, code=True)
 
 
 def describe_value_text(node: Node, parameter: EffectiveParameter) -> str:

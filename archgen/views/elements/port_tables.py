@@ -40,7 +40,7 @@ def list_port_cells(lookup: Lookup, component: Component, kind: PortKind) -> lis
     if kind == "input":
         return [
             PortCells(
-                inline_text.to_inlines(Text(port.name, code=True)),
+                inline_text.to_code(port.name),
                 _source_cell(lookup, port),
                 _input_type_cell(lookup, port),
                 _list_behind(lookup, kind, port) if shell else (),
@@ -198,4 +198,4 @@ def _remarks_cell(lookup: Lookup, port: Input | Output) -> Inlines:
         inline_text.link_urls(port.urls.items(), lookup.repository),
         *(facts for _, facts in list_annotation_facts(lookup, port)),
     ]
-    return inline_text.join_inlines((part for part in parts if any(run.text for run in part)), "; ")
+    return inline_text.join_inlines(filter(None, parts), "; ")

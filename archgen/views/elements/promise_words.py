@@ -103,7 +103,7 @@ def list_topic_facts(architecture: Architecture, topic: Topic) -> Iterator[tuple
     ]
     described: tuple[tuple[str, Callable[[Output], Inlines]], ...] = (
         ("Promised", lambda each: inline_text.to_inlines(describe_promise(each.promise)) if each.promise else ()),
-        ("Version", lambda each: inline_text.to_inlines(each.version) if each.version else ()),
+        ("Version", lambda each: inline_text.to_inlines(each.version)),
         ("Deprecated", lambda each: write_deprecation(architecture, "output", each)),
     )
     for name, describe in described:

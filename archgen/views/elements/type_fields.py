@@ -29,11 +29,11 @@ def make_field_tables(architecture: Architecture, conceptual_type: ConceptualTyp
 def _make_field_table(architecture: Architecture, fields: Iterable[DataField], anchor: str, caption: str) -> Table:
     rows = tuple(
         (
-            inline_text.to_inlines(Text(field.name, code=True)),
+            inline_text.to_code(field.name),
             _type_cell(architecture, field),
             inline_text.to_inlines(Text(format_default(field), code=True)) if field.default is not None else (),
-            inline_text.to_inlines(field.unit) if field.unit else (),
-            inline_text.to_inlines(field.comment) if field.comment else (),
+            inline_text.to_inlines(field.unit),
+            inline_text.to_inlines(field.comment),
         )
         for field in fields
     )
@@ -48,7 +48,7 @@ def _type_cell(architecture: Architecture, field: DataField) -> Inlines:
     message = full_message_name(field.element_type)
     if message:
         return (message_link(message), Text(field.array))
-    return inline_text.to_inlines(Text(field.type or "", code=True)) if field.type else inline_text.UNKNOWN_INLINES
+    return inline_text.to_code(field.type) or inline_text.UNKNOWN_INLINES
 
 
 def make_constant_table(
@@ -57,10 +57,10 @@ def make_constant_table(
     """List the constants of a type or of a message."""
     rows = tuple(
         (
-            inline_text.to_inlines(Text(each.name, code=True)),
-            inline_text.to_inlines(Text(each.value, code=True)),
-            inline_text.to_inlines(Text(each.type, code=True)),
-            inline_text.to_inlines(each.comment) if each.comment else (),
+            inline_text.to_code(each.name),
+            inline_text.to_code(each.value),
+            inline_text.to_code(each.type),
+            inline_text.to_inlines(each.comment),
         )
         for each in constants
     )

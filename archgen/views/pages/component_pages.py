@@ -34,6 +34,26 @@ _MAX_DEPTH = 2
 """So many composed components may be around one that has a heading: the document has four levels of them."""
 
 
+def list_group_parts(lookup: Lookup, group: Group) -> Iterator[tuple[str, str, Block]]:
+    """Yield what the components of a group serve, which chains run through them, and whom their owners talk to, with titles."""
+    architecture = lookup.architecture
+    members = {each.id for each in lookup.shown_members(group.id)}
+    served = [
+        architecture.requirements[name]
+        for name, components in lookup.components_for_requirement.items()
+        if name in architecture.requirements and members & {each.id for each in components}
+    ]
+    if table := make_requirement_table(lookup, served):
+        yield "requirements-of", "Requirements", replace(table, anchor=f"table:requirements-of/{group.id}")
+    nodes = {node.id: node for member in sorted(members) for node in lookup.nodes_of.get(member, ())}
+    activities = list_activities(lookup, nodes.values())
+    if chains := make_chain_share_table(lookup, group.id, group.title, activities):
+        # Between the first of its steps and the last one others may have theirs: no time is the group's alone.
+        yield "chains-through", "Chains through it", keep_columns(chains, (0, 1, 5, 6, 7))
+    if partners := make_partner_bullets(lookup, activities):
+        yield "partners-of", "Who to talk to", partners
+
+
 @dataclass(frozen=True)
 class ReportSections:
     """Makes the sections. `shows_nodes` is whether the document has the implementation level."""
@@ -195,29 +215,11 @@ class ComponentPages:
         # With composed components the line below the title says less.
         is_composed = any(shell.group == group.id for shell in self.lookup.architecture.shells.values())
         blocks = self.keep_drawn(make_group_blocks(self.lookup, group, () if is_composed else {"components"}))
-        section = Section(f"group:{group.id}", group.title, blocks, tuple(self._list_group_sections(group)))
+        parts = list_group_parts(self.lookup, group)
+        sections = tuple(Section(f"{kind}:{group.id}", title, (block,)) for kind, title, block in parts)
+        section = Section(f"group:{group.id}", group.title, blocks, sections)
         lead = f"Group of {inline_text.count_noun(len(group.components), 'component')}"
         return Page(f"groups/{group.id}.html", section.anchor, group.title, "groups", section, (HOME_CRUMB,), lead)
-
-    def _list_group_sections(self, group: Group) -> Iterator[Section]:
-        """Yield what the components of a group serve, which chains run through them, and whom their owners talk to."""
-        lookup, architecture = self.lookup, self.lookup.architecture
-        members = {each.id for each in lookup.shown_members(group.id)}
-        served = [
-            architecture.requirements[name]
-            for name, components in lookup.components_for_requirement.items()
-            if name in architecture.requirements and members & {each.id for each in components}
-        ]
-        if table := make_requirement_table(lookup, served):
-            yield Section(f"requirements-of:{group.id}", "Requirements", (table,))
-        nodes = {node.id: node for member in sorted(members) for node in lookup.nodes_of.get(member, ())}
-        activities = list_activities(lookup, nodes.values())
-        if chains := make_chain_share_table(lookup, group.id, group.title, activities):
-            # Between the first of its steps and the last one others may have theirs: no time is the group's alone.
-            chains = keep_columns(chains, (0, 1, 5, 6, 7))
-            yield Section(f"chains-through:{group.id}", "Chains through it", (chains,))
-        if partners := make_partner_bullets(lookup, activities):
-            yield Section(f"partners-of:{group.id}", "Who to talk to", (partners,))
 
     def _make_component_page(self, component: Component, crumbs: Crumbs) -> Page:
         blocks = self.keep_drawn(make_component_blocks(self.lookup, component, _list_repeated_facts(component)))
@@ -234,12 +236,7 @@ class ComponentPages:
 
     def _make_page(self, component: Component, blocks: tuple[Block, ...], crumbs: Crumbs, lead: str) -> Page:
         is_composed = component.id in self.lookup.architecture.shells
-        activities = (
-            []
-            if is_composed
-            else list_activities(self.lookup, self.lookup.nodes_of.get(component.id, ()), component.id)
-        )
-        sections = make_flow_sections(self.lookup, component.id, component.title, activities)
+        sections = make_flow_sections(self.lookup, component)
         if self.shows_nodes:
             figures = self.keep_drawn(make_implementation_blocks(self.lookup, component.id))
             nodes = list(self.lookup.nodes_inside(component.id))

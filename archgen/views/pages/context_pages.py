@@ -32,6 +32,7 @@ from archgen.views.shapes import (
     Text,
     drop_empty_columns,
     make_columns,
+    show_known,
 )
 from archgen.views.tables import deployment_tables, requirement_tables, type_tables
 from archgen.views.timing import element_timing
@@ -111,11 +112,11 @@ def _channel_page(lookup: Lookup, channel: Topic) -> Page:
     facts: list[tuple[str, Inlines]] = [
         ("Medium", inline_text.to_inlines(medium)),
         ("Type", inline_text.join_inlines(inline_text.type_link(name) for name in channel.types)),
-        ("Size", inline_text.to_inlines(size) if (size := lookup.format_size(channel)) else ()),
+        ("Size", inline_text.to_inlines(lookup.format_size(channel))),
         ("Hosts", inline_text.join_inlines(inline_text.host_link(architecture, each) for each in hosts if each)),
         ("Links", inline_text.join_inlines((Text(each.title, ref=f"link:{each.id}"),) for each in links)),
     ]
-    blocks: list[Block] = [Facts(tuple((name, value) for name, value in facts if value))]
+    blocks: list[Block] = [show_known(facts)]
     writer, reader = ("Server", "Client") if channel.flow != "topic" else ("Sender", "Reader")
     blocks += _endpoint_blocks(lookup, channel, channel.writers, writer)
     blocks += _endpoint_blocks(lookup, channel, channel.readers, reader)
@@ -132,11 +133,11 @@ def _topic_page(lookup: Lookup, topic: Topic) -> Page:
             or inline_text.UNKNOWN_INLINES,
         ),
         ("Type", inline_text.join_inlines(inline_text.type_link(name) for name in topic.types)),
-        ("Size", inline_text.to_inlines(size) if (size := lookup.format_size(topic)) else ()),
+        ("Size", inline_text.to_inlines(lookup.format_size(topic))),
         *element_timing.make_traffic_facts(lookup, topic.name),
         *list_topic_facts(lookup.architecture, topic),
     ]
-    blocks: list[Block] = [Facts(tuple((name, value) for name, value in facts if value))]
+    blocks: list[Block] = [show_known(facts)]
     writer, reader = ("Server", "Client") if topic.flow != "topic" else ("Publisher", "Subscriber")
     blocks += _endpoint_blocks(lookup, topic, topic.writers, writer) + _endpoint_blocks(
         lookup, topic, topic.readers, reader
@@ -159,8 +160,8 @@ def _endpoint_blocks(lookup: Lookup, topic: Topic, endpoints: tuple[Endpoint, ..
                 else ()
             ),
             # Ports by their own names: the component is in the column before.
-            inline_text.to_inlines(Text(endpoint.port.rsplit(".", 1)[-1], code=True)) if endpoint.port else (),
-            inline_text.format_qos_cell(endpoint.qos) if topic.flow == "topic" and topic.medium == ROS else (),
+            inline_text.to_code((endpoint.port or "").rpartition(".")[2]),
+            inline_text.format_qos_cell(endpoint),
         )
         for endpoint in endpoints
     )
@@ -229,8 +230,7 @@ def _type_page(lookup: Lookup, conceptual_type: ConceptualType) -> Page:
         ("Remarks", inline_text.to_inlines(type_tables.describe_mapping(conceptual_type))),
         *list_annotation_facts(lookup, conceptual_type),
     ]
-    # An empty remark is not an empty tuple: it is one run of empty text, so the text is looked at, too.
-    blocks: list[Block] = [Facts(tuple((name, value) for name, value in facts if value and value[0].text))]
+    blocks: list[Block] = [show_known(facts)]
     architecture = lookup.architecture
     blocks += type_fields.make_field_tables(architecture, conceptual_type)
     producing_outputs = lookup.outputs_of_type.get(conceptual_type.name, ())

@@ -7,6 +7,7 @@ from itertools import pairwise
 
 from archgen.analyses.size_counts import ProgressCounts, measure_progress
 from archgen.diagnostics import join_words, phrase_severity_counts
+from archgen.frozen import replace
 from archgen.model.project_history import History, HistoryPoint
 from archgen.views import element_references, inline_text, requirement_servers
 from archgen.views.inline_text import count_noun
@@ -184,7 +185,7 @@ def make_chain_points(lookup: Lookup) -> list[Inlines]:
 
 def _on_new_line(runs: Inlines) -> Inlines:
     """Return runs that begin on a line of their own."""
-    return inline_text.join_lines((inline_text.to_inlines(""), runs))[1:] if runs else ()
+    return (replace(runs[0], line_break=True), *runs[1:]) if runs else ()
 
 
 def _requirement_card(lookup: Lookup) -> DashboardCard | None:

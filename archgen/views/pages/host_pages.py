@@ -14,7 +14,7 @@ from archgen.views.elements.annotation_facts import list_annotation_facts
 from archgen.views.lookup import Lookup
 from archgen.views.pages import context_pages
 from archgen.views.pages.context_pages import FigureFilter
-from archgen.views.shapes import Block, Facts, Inlines, Markdown, Page, Section, Text
+from archgen.views.shapes import Block, Inlines, Markdown, Page, Section, Text, show_known
 from archgen.views.tables import deployment_tables
 from archgen.views.timing import element_timing
 from archgen.views.timing.host_waterfall import make_host_waterfall
@@ -35,11 +35,11 @@ def _host_page(lookup: Lookup, host: Host, keep_drawn: FigureFilter) -> Page:
     order = ", ".join(filter(None, (host.scheduling, timing_words.format_core_orders(host))))
     facts = [
         ("Cores", inline_text.count_to_inlines(host.cores)),
-        ("Address", inline_text.to_inlines(host.address or "")),
+        ("Address", inline_text.to_inlines(host.address)),
         ("Discovery server", inline_text.to_inlines(f"port {host.discovery_server}" if host.discovery_server else "")),
-        ("Scheduling", inline_text.to_inlines(order) if order else ()),
+        ("Scheduling", inline_text.to_inlines(order)),
         ("Environment", inline_text.join_inlines((Text(f"{each[0]}={each[1]}"),) for each in host.environment.items())),
-        ("Tags", inline_text.to_inlines(", ".join(host.tags)) if host.tags else ()),
+        ("Tags", inline_text.to_inlines(", ".join(host.tags))),
         *list_annotation_facts(lookup, host),
         ("Resources", inline_text.join_inlines(map(inline_text.to_inlines, _name_resources(lookup, host)))),
         *_list_link_facts(lookup, host),
@@ -52,7 +52,7 @@ def _host_page(lookup: Lookup, host: Host, keep_drawn: FigureFilter) -> Page:
             ),
         ),
     ]
-    blocks: list[Block] = [Facts(tuple((name, value) for name, value in facts if value))]
+    blocks: list[Block] = [show_known(facts)]
     blocks += [Markdown(host.description)] if host.description else []
     waterfall = make_host_waterfall(lookup, lookup.timing, host.id) if lookup.timing else None
     # The waterfall says the same at a glance; the chart has a page of the report, which has no waterfall.
@@ -94,38 +94,22 @@ def _name_resources(lookup: Lookup, host: Host) -> Iterator[str]:
             yield f"{resource.title} (used by {users})" if users else resource.title
 
 
-def _list_program_facts(container: Container) -> Iterator[tuple[str, Inlines]]:
-    """Yield what is written of a container's own node and its program."""
-    if container.name is not None or container.namespace != "/":
-        yield "ROS name", inline_text.to_inlines(Text(container.full_name, code=True))
-    for name, text in (("Package", container.package), ("Executable", container.executable)):
-        if text:
-            yield name, inline_text.to_inlines(Text(text, code=True))
-    if container.parameters:
-        lines = (
-            inline_text.to_inlines(Text(f"{name}: {format_parameter(value)}", code=True))
-            for name, value in container.parameters.items()
-        )
-        yield "Parameters", inline_text.join_lines(lines)
-
-
 def _container_page(lookup: Lookup, container: Container) -> Page:
     threads = find_container_threads(lookup.architecture, container)
     text = "as many as are asked for" if threads is None else str(threads)
-    facts = [
-        (
-            "Host",
-            inline_text.host_link(lookup.architecture, container.host),
-        ),
-        (
-            "Threads",
-            inline_text.to_inlines(text if container.threads is not None else f"{text} (nothing is written)"),
-        ),
-        *([("Scheduling", inline_text.to_inlines(container.scheduling))] if container.scheduling else []),
-        *_list_program_facts(container),
-    ]
+    is_named = container.name is not None or container.namespace != "/"
+    lines = (inline_text.to_code(f"{name}: {format_parameter(value)}") for name, value in container.parameters.items())
+    facts = (
+        ("Host", inline_text.host_link(lookup.architecture, container.host)),
+        ("Threads", inline_text.to_inlines(text if container.threads is not None else f"{text} (nothing is written)")),
+        ("Scheduling", inline_text.to_inlines(container.scheduling)),
+        ("ROS name", inline_text.to_code(container.full_name if is_named else None)),
+        ("Package", inline_text.to_code(container.package)),
+        ("Executable", inline_text.to_code(container.executable)),
+        ("Parameters", inline_text.join_lines(lines)),
+    )
     nodes = context_pages.make_node_table(
         lookup, [node for node in lookup.shown_nodes() if node.container == container.id]
     )
-    section = Section(f"container:{container.id}", container.title, (Facts(tuple(facts)), *nodes))
+    section = Section(f"container:{container.id}", container.title, (show_known(facts), *nodes))
     return context_pages.make_page(section, "containers", _CRUMB, "Container")

@@ -19,7 +19,6 @@ from archgen.views.lookup import Lookup, collect_messages, group_values, list_fi
 from archgen.views.shapes import (
     Block,
     Column,
-    Facts,
     Inlines,
     Page,
     Paragraph,
@@ -29,6 +28,7 @@ from archgen.views.shapes import (
     drop_column,
     drop_empty_columns,
     make_columns,
+    show_known,
 )
 from archgen.views.tables import deployment_tables
 
@@ -127,15 +127,15 @@ class MessagePages:
     def _make_fact_blocks(self, message: str) -> Iterator[Block]:
         definition = self._definition_of(message)
         facts = (
-            ("Full name", inline_text.to_inlines(Text(message, code=True))),
+            ("Full name", inline_text.to_code(message)),
             ("Size", self._size_cell(message)),
             ("Types", inline_text.join_inlines(inline_text.type_link(each.name) for each in self._types_of(message))),
             ("Part of", inline_text.join_inlines((message_link(each),) for each in self._containers.get(message, ()))),
             ("Definition", self._describe_definition(message)),
         )
-        yield Facts(tuple((name, value) for name, value in facts if value))
+        yield show_known(facts)
         if definition and definition.comment:
-            yield Paragraph(inline_text.join_lines(map(inline_text.to_inlines, definition.comment.splitlines())))
+            yield Paragraph(inline_text.join_lines((Text(line),) for line in definition.comment.splitlines()))
 
     def _describe_definition(self, message: str) -> Inlines:
         interfaces = self._lookup.architecture.interfaces
@@ -167,10 +167,10 @@ class MessagePages:
     def _make_field_table(self, anchor: str, title: str, fields: tuple[InterfaceField, ...]) -> Table:
         rows = tuple(
             (
-                inline_text.to_inlines(Text(field.name, code=True)),
+                inline_text.to_code(field.name),
                 self._field_type_cell(field),
-                inline_text.to_inlines(Text(field.default, code=True)) if field.default else (),
-                inline_text.to_inlines(field.comment) if field.comment else (),
+                inline_text.to_code(field.default),
+                inline_text.to_inlines(field.comment),
             )
             for field in fields
         )

@@ -341,7 +341,7 @@ class SpreadWriter:
     def _name_states(self, component: Component) -> Inlines:
         nodes = self.lookup.nodes_of.get(component.id, ())
         states = dict.fromkeys(filter(None, (component.status, *(node.status for node in nodes))))
-        return inline_text.to_inlines(", ".join(states)) if states else ()
+        return inline_text.to_inlines(", ".join(states))
 
     def _name_hosts(self, component: Component) -> Inlines:
         hosts = dict.fromkeys(node.host for node in self.lookup.nodes_of.get(component.id, ()) if node.host)

@@ -107,7 +107,7 @@ def make_milestone_table(lookup: Lookup) -> Table | None:
             (
                 inline_text.to_inlines(each.milestone.title),
                 inline_text.to_inlines(each.milestone.date or "no day named"),
-                (Text(each.milestone.needs, code=True),) if each.milestone.needs else (),
+                inline_text.to_code(each.milestone.needs),
                 inline_text.to_inlines(inline_text.count_noun(len(each.components), "component")),
                 inline_text.join_inlines(inline_text.partner_link(architecture, owner) for owner in owners),
                 inline_text.join_inlines((inline_text.node_link(node),) for node in planned),

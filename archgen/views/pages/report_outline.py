@@ -241,11 +241,11 @@ class _ChapterMaker:
             Section(
                 f"view:{project_view.id}",
                 project_view.title,
-                tuple(make_figures(self.edition.drawings, f"views/{project_view.id}")),
+                (*figures, *functional_tables.make_view_table(self.lookup, project_view)),
             )
             for project_view in project_views
+            if (figures := make_figures(self.edition.drawings, f"views/{project_view.id}"))
         ]
-        sections = [section for section in sections if section.blocks]
         return [Section("page:views", "Views", (), tuple(sections), page_break=True)] if sections else []
 
     def make_types(self) -> list[Section]:

@@ -44,12 +44,12 @@ def _list_facts(lookup: Lookup, requirement: Requirement) -> Iterator[tuple[str,
     if trace.parts or trace.is_verification_told or trace.missed:
         yield "State", (requirement_servers.state_chip(lookup, requirement),)
     parents = (inline_text.requirement_link(lookup.architecture, parent) for parent in requirement.parents)
-    yield "Part of", inline_text.join_lines(parents) if requirement.parents else ()
+    yield "Part of", inline_text.join_lines(parents)
     for name, words in (("Kind", requirement.kind), ("Priority", requirement.priority), ("Source", requirement.source)):
-        yield name, inline_text.to_inlines(words) if words else ()
+        yield name, inline_text.to_inlines(words)
     use_cases = (requirement_tables.use_case_link(lookup, name) for name in requirement.use_cases)
     yield "Use cases", inline_text.join_inlines(use_cases)
-    yield "Tags", inline_text.to_inlines(", ".join(requirement.tags)) if requirement.tags else ()
+    yield "Tags", inline_text.to_inlines(", ".join(requirement.tags))
     yield "Links", inline_text.link_urls(requirement.urls.items(), lookup.repository)
     yield from list_annotation_facts(lookup, requirement)
 

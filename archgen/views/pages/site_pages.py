@@ -45,7 +45,7 @@ from archgen.views.tables import (
     type_tables,
 )
 from archgen.views.timing.chain_waterfall import WATERFALL_FACTS, make_waterfall
-from archgen.views.timing.flow_tables import list_activities, make_flow_sections
+from archgen.views.timing.flow_tables import make_flow_sections
 from archgen.views.timing.host_waterfall import make_slack_waterfall
 
 
@@ -189,8 +189,7 @@ class PageMaker:
 
     def make_node_page(self, node: Node) -> Page:
         """Make the page of a node."""
-        flows = make_flow_sections(self.lookup, node.id, node.id, list_activities(self.lookup, (node,)))
-        sections = (*flows, *self._finding_sections(node.id, *node.implements))
+        sections = (*make_flow_sections(self.lookup, node), *self._finding_sections(node.id, *node.implements))
         section = Section(f"node:{node.id}", node.id, make_node_blocks(self.lookup, node), sections)
         kinds = ", ".join(inline_text.NODE_KIND_WORDS[kind] for kind in node.kinds)
         lead = self._lead_with_owners(

@@ -10,8 +10,6 @@ from typing import Literal
 from archgen.frozen import dataclass, replace
 from archgen.model.architecture import Architecture, Milestone, Partner
 from archgen.model.component import Component
-from archgen.model.flow_graph import build_component_graph
-from archgen.model.graph_search import find_reachable
 from archgen.model.partner_interfaces import components_at_ends, foreign_owners
 from archgen.model.requirement import Requirement
 from archgen.model.selector_evaluation import SelectorEvaluator
@@ -201,9 +199,7 @@ def find_impact(
     chains = tuple(_find_chains(judged, late))
     broken_ids = {each.result.id for each in chains}
     interfaces = _find_interfaces(lookup, exchanges, late)
-    successors = build_component_graph(lookup.architecture).successors
-    fed = [name for name in find_reachable(successors, sorted(late.components)) if name not in late.components]
-    direct = {reader for name in late.components for reader in successors.get(name, ())}
+    fed = lookup.find_fed(sorted(late.components))
     cases = lookup.steps.by_use_case
     return PartnerImpact(
         late,
@@ -215,7 +211,7 @@ def find_impact(
         interfaces,
         tuple(_find_waiting(lookup, interfaces)),
         tuple(_count_awaited(exchanges, late)),
-        tuple(name for name in fed if name in direct),
+        tuple(name for name, steps in fed.items() if steps == 1),
         len(fed),
         tuple(own_needs),
         until,

@@ -236,11 +236,11 @@ def _join_named(facts: Iterable[Fact]) -> Inlines:
 def _make_endpoint_table(lookup: Lookup, component: Component, nodes: Sequence[Node]) -> Table | None:
     rows = tuple(
         (
-            inline_text.to_inlines(Text(node.id, code=True)),
+            inline_text.to_code(node.id),
             inline_text.to_inlines(_USE_WORDS[endpoint.use]),
             (*inline_text.name_carrier(endpoint), *([Text(" internal", muted=True)] if endpoint.internal else [])),
             _message_cell(endpoint),
-            inline_text.to_inlines(Text(endpoint.port.rsplit(".", 1)[-1], code=True)) if endpoint.port else (),
+            inline_text.to_code((endpoint.port or "").rpartition(".")[2]),
             _qos_cell(endpoint),
         )
         for node in nodes
@@ -262,6 +262,11 @@ def _message_cell(endpoint: Endpoint) -> Inlines:
         if endpoint.message
         else inline_text.UNKNOWN_INLINES
     )
+
+
+def set_small(table: Table) -> Table:
+    """Return a table in small type on an upright page, without a number: its title stands above it."""
+    return replace(table, wide=False, numbered=False, dense=True)
 
 
 def shorten_message(name: str) -> str:

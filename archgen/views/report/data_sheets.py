@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import dataclasses
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
+from itertools import islice
 
+from archgen.grouping import group_pairs
 from archgen.model.component import Component
 from archgen.views import inline_text
 from archgen.views.elements.functional_level import (
@@ -18,7 +20,7 @@ from archgen.views.lookup import Lookup
 from archgen.views.pages import report_outline
 from archgen.views.pages.report_outline import DocumentEdition
 from archgen.views.report import front_pages
-from archgen.views.report.condensed_blocks import condense_node_facts
+from archgen.views.report.condensed_blocks import condense_node_facts, set_small
 from archgen.views.report.printed_figures import print_section_figures
 from archgen.views.report.report_drawings import make_report_drawings
 from archgen.views.sequences.sequence_blocks import link_use_cases
@@ -26,7 +28,6 @@ from archgen.views.shapes import (
     Block,
     Bullets,
     FactRow,
-    Facts,
     Figure,
     Inlines,
     Outline,
@@ -36,17 +37,26 @@ from archgen.views.shapes import (
     Text,
     drop_empty_columns,
     make_columns,
+    show_known,
 )
 from archgen.views.tables import finding_tables
-from archgen.views.timing.flow_tables import FlowRow, list_activities, list_flow_rows, make_chain_share_table
+from archgen.views.timing.flow_tables import (
+    FlowRow,
+    list_activities,
+    list_flow_rows,
+    list_reliance,
+    list_time_left,
+    make_chain_share_table,
+)
 
 Sheets = list[tuple[str, Component]]
 """Components with the numbers of their sheets: `7.3`."""
-_MAX_PICTURE_ROWS = 9
+_MAX_PICTURE_ROWS = 8
 """With more rows in its tables a sheet has no room for a picture."""
 _MAX_ROWS = 12
 """With more flows a sheet has no room for what the site and the workbook say of a component beside them."""
 _MAX_FINDINGS = 5
+_RELIANCE = "What rests on it"
 
 
 def number_sheets(lookup: Lookup) -> Mapping[str, Sheets]:
@@ -107,12 +117,13 @@ def _list_blocks(lookup: Lookup, edition: DocumentEdition, component: Component)
     tables = list(_list_flow_tables(lookup, component, list_flow_rows(lookup, activities)))
     is_full = sum(len(table.rows) for table in tables) > _MAX_ROWS
     yield make_functionality_block(component)
-    left_out = ("Takes part in", "Performance") if is_full else ()
-    facts = _list_facts(lookup, component)
-    yield Facts(tuple((title, value) for title, value in facts if value and title not in left_out))
+    left_out = ("Takes part in", "Performance", _RELIANCE) if is_full else ()
+    time_left = inline_text.join_lines(list_time_left(lookup, activities))
+    facts = (*_list_facts(lookup, component), ("How long it may take", time_left))
+    yield show_known(fact for fact in facts if fact[0] not in left_out)
     if chains := make_chain_share_table(lookup, component.id, component.title, activities):
-        tables.append(_set_small(chains))
-    tables += [_set_small(each) for each in make_parameter_blocks(component) if isinstance(each, Table)]
+        tables.append(set_small(chains))
+    tables += [set_small(each) for each in make_parameter_blocks(component) if isinstance(each, Table)]
     name = f"components/{component.id}"
     if name in edition.drawings and sum(len(table.rows) for table in tables) <= _MAX_PICTURE_ROWS:
         drawing = edition.drawings[name]
@@ -160,33 +171,24 @@ def _list_facts(lookup: Lookup, component: Component) -> Iterator[FactRow]:
     for table in make_performance_blocks(component):
         if isinstance(table, Table):
             yield "Performance", inline_text.join_lines(map(_phrase_row, table.rows))
+    # In a line: a sheet is a page, and its table names who reads from it.
+    yield _RELIANCE, inline_text.join_inlines(islice(list_reliance(lookup, component, 1), 2), "; ")
 
 
 def _phrase_row(row: Sequence[Inlines]) -> Inlines:
     return inline_text.join_inlines((cell for cell in row if cell and cell != inline_text.UNKNOWN_INLINES), ", ")
 
 
-def _set_small(table: Table) -> Table:
-    return dataclasses.replace(table, wide=False, numbered=False, dense=True)
-
-
 def _list_flow_tables(
     lookup: Lookup, component: Component, rows: tuple[Sequence[FlowRow], Sequence[FlowRow]]
 ) -> Iterator[Table]:
     """Yield the tables of inputs and outputs. A flow stands at its port, whichever way its requests run."""
-    taken, given = (_group_by_port(each) for each in rows)
+    taken, given = (group_pairs((row.port, row) for row in each) for each in rows)
     for kind, own, other in (("input", taken, given), ("output", given, taken)):
         ports = component.inputs if kind == "input" else component.outputs
         crossing = {name: other.pop(name) for name in ports if name in other and name not in own}
         if table := _make_flow_table(lookup, component, kind, own | crossing):
             yield table
-
-
-def _group_by_port(rows: Iterable[FlowRow]) -> dict[str, list[FlowRow]]:
-    flows: dict[str, list[FlowRow]] = {}
-    for row in rows:
-        flows.setdefault(row.port, []).append(row)
-    return flows
 
 
 def _make_flow_table(lookup: Lookup, component: Component, kind: str, flows: dict[str, list[FlowRow]]) -> Table | None:
@@ -227,6 +229,6 @@ def _write_flow(port: PortCells, row: FlowRow, *, is_first: bool) -> tuple[Inlin
 def _write_figures(row: FlowRow, type_cell: Inlines) -> tuple[Inlines, ...]:
     # The message is that of the type: the topic alone stands below it.
     topic = row.topic[:1]
-    what = inline_text.join_lines(filter(None, (type_cell, topic)))
+    what = inline_text.join_lines((type_cell, topic))
     reading = inline_text.to_inlines(row.reading)
     return what, row.other, row.rate, row.gap, row.age, reading

@@ -40,6 +40,7 @@ _BLOCK_WORDS = {
     "table:periods": "sorts what the nodes do by how often they do it",
     "table:chains": "compares the bound of each chain with its deadline",
     "figure:views/": "shows this part of the architecture by itself",
+    "table:flows/": "lists what flows in it",
     "table:parameters": "lists the parameters of each node with their values",
     "table:message_fields": "lists them with their types and meanings",
     "figure:timing": "shows how often all nodes do something",

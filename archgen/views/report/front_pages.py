@@ -171,10 +171,7 @@ def _list_short_signs(lookup: Lookup) -> Iterator[FactRow]:
 
 def _make_history_table(settings: ReportSettings) -> Table:
     rows = tuple(
-        tuple(
-            inline_text.to_inlines(text) if text else ()
-            for text in (entry.version, entry.date, entry.author, entry.change)
-        )
+        tuple(inline_text.to_inlines(text) for text in (entry.version, entry.date, entry.author, entry.change))
         for entry in settings.history
     )
     columns = (Column("Version", 0.5), Column("Date", 0.7), Column("Author"), Column("Change", 3))

@@ -17,6 +17,7 @@ from archgen.views.elements.functional_level import list_group_facts
 from archgen.views.graphs.element_boxes import name_in_place
 from archgen.views.lookup import Lookup, collect_messages
 from archgen.views.pages import report_outline
+from archgen.views.pages.component_pages import list_group_parts
 from archgen.views.pages.context_pages import shown_topics
 from archgen.views.pages.report_outline import DocumentEdition
 from archgen.views.picture_shapes import Drawing, Graph, Sheet
@@ -147,11 +148,14 @@ class _ReportPrinter:
         texts = [block for block in blocks if isinstance(block, Markdown)]
         group = self.lookup.architecture.groups[section.subject]
         facts = Facts(tuple(map(condensed_blocks.print_fact, list_group_facts(self.lookup, group))))
-        others = [
+        others: list[Block] = [
             drop_column(block, "nodes") if isinstance(block, Table) else block
             for block in blocks
             if not isinstance(block, Markdown | Facts)
         ]
+        for _, title, block in list_group_parts(self.lookup, group):
+            others.append(Paragraph((Text(title, strong=True),)))
+            others.append(condensed_blocks.set_small(block) if isinstance(block, Table) else block)
         sections = tuple(self._print_component(each) for each in section.sections)
         return dataclasses.replace(section, blocks=(*texts, facts, *others), sections=sections)
 

@@ -6,13 +6,20 @@ from collections.abc import Iterable, Sequence
 
 from archgen.views.search.search_entry import SearchEntry
 
+_QUESTION_WORDS = (
+    "a an and are at by does do for from give gives has have how i in into is it my of on or read reads send sends run runs "
+    "takes the to use uses what when where which who whom whose why with"
+)
+QUESTION_WORDS = tuple(_QUESTION_WORDS.split())
+"""Left out where other words stand beside them, on the site and here: "who reads the odometry" asks for the odometry."""
 _NO_MATCH = 6
 """Behind an id or title as it is, its end, its beginning, a part of it, a key, and a text."""
 
 
 def rank_entries(entries: Iterable[SearchEntry], words: Sequence[str]) -> list[SearchEntry]:
-    """Return the entries in which each word stands somewhere, in any case of letters: where all stand best comes first."""
-    folded = [word.casefold() for word in words if word.strip()]
+    """Return the entries in which each word that asks for something stands, in any case of letters, the best first."""
+    said = [word.casefold() for word in words if word.strip()]
+    folded = [word for word in said if word not in QUESTION_WORDS] or said
     ranked = []
     for number, entry in enumerate(entries):
         ranks = [_rank(entry, word) for word in folded]

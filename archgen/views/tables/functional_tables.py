@@ -4,11 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 
-from archgen.model.architecture import Architecture, Chain
+from archgen.model.architecture import Architecture, Chain, View
 from archgen.model.component import Connection
 from archgen.model.component_nesting import find_component
 from archgen.model.coordinate_frames import Frame
 from archgen.model.port_media import label_of_medium
+from archgen.model.selector_evaluation import evaluate_selector
 from archgen.views import element_references, inline_text
 from archgen.views.elements.frame_users import NOBODY, index_frame_ports, list_shown_frames
 from archgen.views.elements.functional_level import describe_purpose
@@ -33,7 +34,10 @@ def make_group_table(lookup: Lookup) -> Table | None:
 
 
 def make_connection_table(
-    lookup: Lookup, selected_connections: Iterable[Connection], anchor: str = "table:connections"
+    lookup: Lookup,
+    selected_connections: Iterable[Connection],
+    anchor: str = "table:connections",
+    caption: str = "All connections",
 ) -> Table | None:
     """List connections: input, source, type, message and number of edges."""
     architecture = lookup.architecture
@@ -50,7 +54,7 @@ def make_connection_table(
     columns = make_columns(
         ("Input", 1.6), ("Comes from", 1.6), ("Type", 1.2), ("Message", 1.6), ("Edges", 0.5, "right")
     )
-    return Table(anchor, "All connections", columns, rows, wide=True) if rows else None
+    return Table(anchor, caption, columns, rows, wide=True) if rows else None
 
 
 def _type_cell(lookup: Lookup, connection: Connection) -> Inlines:
@@ -70,6 +74,20 @@ def _message_cell(lookup: Lookup, connection: Connection) -> Inlines:
         link = (element_references.message_link(name),) if name else inline_text.UNKNOWN_INLINES
         cells[remark or name or ""] = (Text(remark),) if remark else link
     return inline_text.join_inlines(cells.values())
+
+
+def make_view_table(lookup: Lookup, view: View) -> list[Table]:
+    """List the connections between the components that a view of the project shows; nothing where it shows nodes."""
+    architecture = lookup.architecture
+    shown = evaluate_selector(view.show, architecture)[0].components if view.level == "functional" else ()
+    connections = [
+        each
+        for each in architecture.connections
+        if architecture.inputs[each.input].component in shown
+        and any(architecture.outputs[output].component in shown for output in each.outputs)
+    ]
+    table = make_connection_table(lookup, connections, f"table:flows/{view.id}", f"{view.title}: what flows")
+    return [table] if table else []
 
 
 def shown_connections(lookup: Lookup) -> list[Connection]:

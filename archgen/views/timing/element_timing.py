@@ -102,7 +102,7 @@ def make_chain_blocks(
         ("Place", 1.4),
     )
     return (
-        show_facts((fact for fact in facts if fact.value and not timing_tables.is_blank(fact.value)), without),
+        show_facts((fact for fact in facts if not timing_tables.is_blank(fact.value)), without),
         Figure(f"figure:{name}", name, title, chain_charts.describe_chain_verdict(result, timing_lookup)),
         *make_late_run_figures(lookup, timing_lookup, result),
         *([Table(f"table:{name}", f"{chain.title}: parts of the bound", columns, rows)] if rows else []),

@@ -1,4 +1,4 @@
-"""What an element takes in and gives out, a row a flow; the chains through it; what no chain says; whom to talk to.
+"""What an element takes in and gives out, a row a flow; its chains, the time left to it, what no chain says; who reads it.
 
 Site, cards and documents read the same rows.
 """
@@ -10,11 +10,13 @@ from fractions import Fraction
 
 from archgen.diagnostics import join_words, order_naturally
 from archgen.frozen import NamedTuple
+from archgen.model.component import Component
 from archgen.model.element_ids import make_id, make_unique_id
 from archgen.model.node import Node
 from archgen.timing.analysis import ChainResult
 from archgen.timing.chains.chain_advice import sum_known_parts
 from archgen.timing.chains.element_flows import ElementFlow, UnjudgedWay
+from archgen.timing.figures.tick_unit import NS_PER_SECOND
 from archgen.timing.figures.timing_values import TimingValue, sum_fractions
 from archgen.timing.figures.value_arithmetic import sum_bounds
 from archgen.timing.system.timing_system import Activity
@@ -51,6 +53,14 @@ def list_activities(lookup: Lookup, nodes: Iterable[Node], component_id: str = "
     # all.
     names = {None, component_id, component_id.rsplit(".", 1)[-1]}
     return [each for each in activities if not component_id or each.component in names]
+
+
+def list_own_activities(lookup: Lookup, element: Node | Component) -> list[Activity]:
+    """Return the activities of a node, or of a component; a composed one has none of its own."""
+    if isinstance(element, Node):
+        return list_activities(lookup, (element,))
+    is_composed = element.id in lookup.architecture.shells
+    return [] if is_composed else list_activities(lookup, lookup.nodes_of.get(element.id, ()), element.id)
 
 
 def list_flow_rows(lookup: Lookup, activities: Sequence[Activity]) -> tuple[list[FlowRow], list[FlowRow]]:
@@ -106,7 +116,7 @@ def _describe_end(lookup: Lookup, timing_lookup: TimingLookup, own_id: str, othe
     travel = f"by {link_title}" if link_title else "same host" if own.host and own.host == other.host else ""
     notes = [inline_text.owner_links(architecture, owners)] if owners else []
     notes += [inline_text.to_inlines(Text(travel, muted=True))] if travel else []
-    return inline_text.join_lines(((name,), *((inline_text.join_inlines(notes, " · "),) if notes else ())))
+    return inline_text.join_lines(((name,), inline_text.join_inlines(notes, " · ")))
 
 
 def _describe_topic(lookup: Lookup, topic_name: str) -> Inlines:
@@ -117,7 +127,7 @@ def _describe_topic(lookup: Lookup, topic_name: str) -> Inlines:
     size = lookup.format_size(topic).partition(" (")[0] if topic.flow == "topic" else ""
     if messages and size not in {"", "unknown"}:
         messages = (*messages, Text(f" {size}", muted=True))
-    return inline_text.join_lines(((inline_text.topic_link(topic_name),), *((messages,) if messages else ())))
+    return inline_text.join_lines(((inline_text.topic_link(topic_name),), messages))
 
 
 def _describe_reading(flow: ElementFlow) -> str:
@@ -271,14 +281,16 @@ def _port_name(key: str) -> str:
     return key.rpartition(".")[2]
 
 
-def list_flow_lines(lookup: Lookup, activities: Sequence[Activity]) -> Iterator[tuple[str, tuple[str, ...]]]:
-    """Yield what the tables say, in lines for a card: what an element takes in, gives out, its chains, what no chain says."""
+def list_flow_lines(lookup: Lookup, element: Node | Component) -> Iterator[tuple[str, tuple[str, ...]]]:
+    """Yield what the sections of its page say of an element, in lines for a card."""
+    activities = list_own_activities(lookup, element)
     for name, arrow, rows in zip(
         ("takes in", "gives out"), ("<-", "->"), list_flow_rows(lookup, activities), strict=True
     ):
         yield name, tuple(_write_line(row, arrow) for row in rows)
     results = _list_chains_through(lookup, {each.id for each in activities})
     yield "chains", tuple(f"{each.id}: {_read(chain_status.chain_chip(each))}" for each, _ in results)
+    yield "how long it may take", tuple(map(_read, list_time_left(lookup, activities)))
     yield (
         "what no chain says",
         tuple(
@@ -286,6 +298,7 @@ def list_flow_lines(lookup: Lookup, activities: Sequence[Activity]) -> Iterator[
             for way, text in list_unjudged_lines(lookup, activities)
         ),
     )
+    yield "what rests on it", tuple(map(_read, list_reliance(lookup, element)))
 
 
 def _write_line(row: FlowRow, arrow: str) -> str:
@@ -304,6 +317,77 @@ def _write_line(row: FlowRow, arrow: str) -> str:
 def _read(cell: Inlines) -> str:
     """Return the text of a cell on one line."""
     return "".join(f", {run.text}" if run.line_break else run.text for run in cell)
+
+
+def list_time_left(lookup: Lookup, activities: Sequence[Activity]) -> Iterator[Inlines]:
+    """Yield what rates and deadlines leave to activities of which nobody has written how long they take."""
+    for activity in activities:
+        start = lookup.architecture.nodes[activity.node].start
+        is_once = activity.behaviour == "once" or (start is not None and start.once)
+        if lookup.timing is None or is_once or not (activity.wcet is activity.response is None):
+            continue
+        name = (Text(activity.id, code=True), Text(": ")) if len(activities) > 1 else ()
+        rate = lookup.timing.analysis.paces[activity.id].rate
+        # Runs of what is reentrant need not follow one another.
+        period = NS_PER_SECOND / rate.value if rate.value and activity.callback_group else None
+        if period:
+            most = chain_status.round_duration(period, ">")
+            yield (*name, Text(f"less than {most} a run, at {value_format.display_rate(rate)}"))
+        results = [result for result, _ in _list_chains_through(lookup, {activity.id}) if result.deadline]
+        for result in results:
+            others = [each for each in result.bound.missing if each != activity.id]
+            rest = f", together with {join_words(others)}" if others and result.verdict == "open" else ""
+            margin = chain_status.describe_margin(result) or "nobody knows how much is left"
+            yield (*name, *_link_chain(lookup, result), Text(f": {margin}{rest}"))
+        if not period and not results:
+            yield (*name, Text("nothing that is written limits it"))
+
+
+def list_reliance(lookup: Lookup, element: Node | Component, max_names: int = 8) -> Iterator[Inlines]:
+    """Yield who reads from an element, and who reads from those; who can do without it, and who waits for its start."""
+    architecture = lookup.architecture
+    components = architecture.components
+    own, nodes = (
+        (element.implements, ())
+        if isinstance(element, Node)
+        else (architecture.leaves_of(element.id), lookup.nodes_inside(element.id))
+    )
+    started = {element.id, *own, *(node.id for node in nodes)}
+    fed = lookup.find_fed(own)
+    inputs = [
+        architecture.inputs[connection.input]
+        for name in own
+        for output in components[name].outputs.values()
+        for connection in lookup.readers_of.get(output.id, ())
+    ]
+    needing = {port.component for port in inputs if not port.optional}
+    free = dict.fromkeys(port.component for port in inputs if port.component in fed)
+    groups = {
+        "Read from it": [name for name, steps in fed.items() if steps == 1],
+        "Read from those": [name for name, steps in fed.items() if steps > 1],
+        "Can do without it": [name for name in free if name not in needing],
+        "Wait for it at the start": [
+            each.id
+            for each in architecture.nodes.values()
+            if each.start and not started.isdisjoint(each.start.list_awaited())
+        ],
+    }
+    for words, names in groups.items():
+        # Of a thousand only those that are named need a link.
+        links = [
+            (
+                inline_text.component_link(components[each])
+                if each in components
+                else Text(each, f"node:{each}", code=True),
+            )
+            for each in names[:max_names]
+        ]
+        more = f" and {len(names) - max_names} more" if len(names) > max_names else ""
+        if names:
+            yield inline_text.to_inlines(f"{words} ({len(names)}): ", *inline_text.join_inlines(links), more)
+    if fed:
+        command = " ".join(("archgen impact", *(f"--component {name}" for name in own)))
+        yield (Text(command, code=True), Text(" says which deadlines, use cases and requirements rest on it"))
 
 
 def make_partner_bullets(lookup: Lookup, activities: Sequence[Activity]) -> Bullets | None:
@@ -332,14 +416,20 @@ def make_partner_bullets(lookup: Lookup, activities: Sequence[Activity]) -> Bull
     return Bullets(tuple(items)) if items else None
 
 
-def make_flow_sections(lookup: Lookup, element_id: str, title: str, activities: Sequence[Activity]) -> list[Section]:
-    """Return the sections on a page about what an element takes in and gives out, chains through it, and whom to talk to."""
-    chains = make_chain_share_table(lookup, element_id, title, activities)
+def make_flow_sections(lookup: Lookup, element: Node | Component) -> list[Section]:
+    """Return the sections on the page of an element about what passes through it, its time, and who relies on it."""
+    name, title = element.id, element.id if isinstance(element, Node) else element.title
+    activities = list_own_activities(lookup, element)
+    chains = make_chain_share_table(lookup, name, title, activities)
     partners = make_partner_bullets(lookup, activities)
+    time_left, reliance = tuple(list_time_left(lookup, activities)), tuple(list_reliance(lookup, element))
+    unwritten = Paragraph(inline_text.to_inlines("No execution time is written. What is left to it:"))
     parts: list[tuple[str, str, tuple[Block, ...]]] = [
-        ("flows", "Takes in and gives out", tuple(make_flow_blocks(lookup, element_id, title, activities))),
+        ("flows", "Takes in and gives out", tuple(make_flow_blocks(lookup, name, title, activities))),
         ("chains-through", "Chains through it", (chains,) if chains else ()),
+        ("time-left", "How long it may take", (unwritten, Bullets(time_left)) if time_left else ()),
         ("unjudged", "What no chain says", tuple(make_unjudged_blocks(lookup, activities))),
+        ("reliance", "What rests on it", (Bullets(reliance),) if reliance else ()),
         ("partners-of", "Who to talk to", (partners,) if partners else ()),
     ]
-    return [Section(f"{kind}:{element_id}", heading, blocks) for kind, heading, blocks in parts if blocks]
+    return [Section(f"{kind}:{name}", heading, blocks) for kind, heading, blocks in parts if blocks]

@@ -57,7 +57,7 @@ def make_resource_table(lookup: Lookup, timing_lookup: TimingLookup) -> Table | 
     rows = tuple(
         (
             inline_text.to_inlines(name),
-            inline_text.to_inlines(load.host or ""),
+            inline_text.to_inlines(load.host),
             timing_tables.share_cell(load.utilisation),
             inline_text.to_inlines(_VERDICT_WORDS[load.verdict]),
             inline_text.join_inlines(

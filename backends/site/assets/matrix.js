@@ -145,6 +145,7 @@
     const table = element("table", { className: "matrix" + (across.length > DENSE ? " dense" : "") + (isSquare ? "" : " oblong") },
       element("caption", { className: "spoken", textContent: document.querySelector("h1").textContent + ": " + giverWord }),
       element("thead", {}, element("tr", {}, element("td", {}), ...heads)), body);
+    table.style.setProperty("--columns", across.length);
     box.replaceChildren(table);
     const links = [...table.querySelectorAll("td > a")];
     links.forEach((link, at) => (link.tabIndex = at ? -1 : 0));

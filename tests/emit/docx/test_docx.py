@@ -271,7 +271,9 @@ def test_a_row_that_others_refer_to_has_a_bookmark() -> None:
     [
         (300, 100, "A4", 9.0),
         (555, 300, "A4", 7.4),
-        (565, 300, "A4 turned", 9.0),
+        (565, 300, "A4", 8.5),
+        (655, 300, "A4", 7.4),
+        (665, 300, "A4 turned", 9.0),
         (780, 300, "A4 turned", 8.1),
         (1100, 200, "A3 turned", 8.6),
         (600, 1100, "A3", 8.1),
@@ -288,6 +290,9 @@ def test_a_picture_gets_the_paper_on_which_it_can_be_read(
     assert papers[re.findall(r'<w:pgSz w:w="(\d+)"', xml)[-1]] == paper
     shown = int(re.findall(r'<wp:extent cx="(\d+)"', xml)[0]) / 12700
     assert round(9 * shown / width, 1) == type_size
+    # What is a little too wide for the text reaches over both margins alike.
+    over = re.findall(r'<w:ind w:left="-(\d+)" w:right="-\1"/>', xml)
+    assert [round(int(each) / 10) for each in over] == ([round(shown - 453.6)] if paper == "A4" and shown > 454 else [])
 
 
 def test_a_picture_that_no_paper_shows_legibly_is_left_out() -> None:

@@ -167,6 +167,20 @@ def test_a_hundred_groups_are_few_elements_with_all_their_cells(browser: Browser
         assert page.evaluate("document.activeElement.dataset.column") == "5"
 
 
+def test_a_wide_matrix_fits_on_paper_that_lies_on_its_side(browser: Browser, tmp_path: Path) -> None:
+    rows = tuple(MatrixEntry(f"Component {at}", f"component:r{at}") for at in range(60))
+    flows = tuple(MatrixFlow(at, at + 1, "x", "") for at in range(59))
+    write_tree(build(Matrix("components", "Components", rows, flows)), tmp_path / "site")
+    with watch_pages() as watch:
+        # A4 without margins of 1 cm.
+        page = watch(browser.new_context(viewport={"width": 1047, "height": 700}).new_page())
+        page.emulate_media(media="print")
+        page.goto(f"file://{tmp_path}/site/index.html")
+        assert page.locator(".matrix.dense").bounding_box()["width"] > 700  # type: ignore[index]
+        assert page.evaluate("document.documentElement.scrollWidth") == 1047
+        assert page.evaluate("getComputedStyle(document.body).page") == "wide"
+
+
 def test_hover_shows_both_partners_and_what_flows_as_text(page: BrowserPage) -> None:
     page.locator("td > a").first.hover()
     card = page.locator(".matrix-card")

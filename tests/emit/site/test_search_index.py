@@ -149,6 +149,7 @@ def test_the_empty_box_gets_open_points_and_selectors() -> None:
     assert isinstance(index, dict)
     assert index["open"] == [["Nobody reads it", "warning", "finding", "x.html"]]
     assert index["examples"] == ["owner:acme", "tag:safety"]
+    assert {"who", "reads", "the"} <= set(index["questionWords"])
 
 
 def test_no_file_is_large_and_no_text_is_lost() -> None:

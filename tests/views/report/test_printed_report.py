@@ -15,7 +15,7 @@ from archgen.products.project_views import ProjectViews, make_views
 from archgen.views.pages import report_outline
 from archgen.views.report.printed_figures import print_inlines, print_text
 from archgen.views.report.printed_report import make_printed_report, walk_sections
-from archgen.views.shapes import Outline, Section, Text
+from archgen.views.shapes import Outline, Paragraph, Section, Table, Text
 from tests.judged_projects import judge_ramcip
 from tests.property_sizes import mark_further_samples
 from tests.views.report.report_texts import list_block_texts, list_texts
@@ -85,6 +85,14 @@ def test_nothing_of_a_component_moves_to_another(views: ProjectViews) -> None:
             texts = [text for part in parts for text in list_texts(part)]
             lost[component] = _list_lost(list_texts(section), [*texts, *shared])
     assert {name: texts for name, texts in lost.items() if texts} == {}
+
+
+def test_groups_have_what_they_serve_and_views_what_flows_in_them(views: ProjectViews) -> None:
+    printed = make_printed_report(views.lookup, views.edition)
+    sections = {section.anchor: section for section in walk_sections(printed.sections)}
+    titles = [block.inlines[0].text for block in sections["group:human_state"].blocks if isinstance(block, Paragraph)]
+    assert titles[1:] == ["Requirements", "Chains through it", "Who to talk to"]
+    assert [block.kind for block in sections["view:safety"].blocks if isinstance(block, Table)] == ["table:flows"]
 
 
 @pytest.mark.slow

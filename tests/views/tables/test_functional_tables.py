@@ -30,6 +30,7 @@ groups:
   idle: {}
 chains: {look: {through: [camera, eye.place], deadline: 100 ms}}
 types: {Image: sensor_msgs/msg/Image}
+views: {light: {show: lamp eye}, nodes: {show: lamp eye, level: implementation}, alone: {show: camera}}
 """
 
 
@@ -63,6 +64,14 @@ def test_a_connection_over_no_message_names_its_medium(lookup: Lookup) -> None:
         ["Eye · image", "Camera · image", "Image", "sensor_msgs/msg/Image", "1"],
         ["Eye · light", "Lamp · light", "Light", "physical", "1"],
     ]
+
+
+def test_of_a_view_what_flows_between_its_components_is_listed(lookup: Lookup) -> None:
+    tables = {
+        name: list(map(read_cells, functional_tables.make_view_table(lookup, view)))
+        for name, view in lookup.architecture.views.items()
+    }
+    assert tables == {"light": [[["Eye · light", "Lamp · light", "Light", "physical", "1"]]], "nodes": [], "alone": []}
 
 
 def test_a_chain_leads_through_components_and_outputs(lookup: Lookup) -> None:

@@ -16,7 +16,15 @@ from archgen.views.pages.report_outline import DocumentEdition
 from archgen.views.pages.site_pages import make_pages
 from archgen.views.shapes import Bullets, Inlines, Markdown, Section, Table
 from archgen.views.timing import flow_tables
-from archgen.views.timing.flow_tables import list_activities, list_flow_rows, make_flow_sections, make_unjudged_blocks
+from archgen.views.timing.flow_tables import (
+    list_activities,
+    list_flow_rows,
+    list_own_activities,
+    list_reliance,
+    list_time_left,
+    make_flow_sections,
+    make_unjudged_blocks,
+)
 from archgen.views.timing.timing_lookup import analyse_with_chains
 
 ROBOT = """\
@@ -76,7 +84,7 @@ def test_a_sensor_of_two_nodes_begins_with_the_first_one(tmp_path: Path) -> None
 
 def test_the_page_has_chains_what_no_chain_says_and_whom_to_talk_to(tmp_path: Path) -> None:
     lookup = _look_up(tmp_path)
-    sections = make_flow_sections(lookup, "stop", "stop", list_activities(lookup, (lookup.architecture.nodes["stop"],)))
+    sections = make_flow_sections(lookup, lookup.architecture.nodes["stop"])
     assert [section.title for section in sections] == [
         "Takes in and gives out",
         "Chains through it",
@@ -157,10 +165,68 @@ def _list_flows(section: Section) -> list[list[str]]:
     return [[_read(cell) for cell in row] for row in table.rows]
 
 
+def test_what_rates_and_deadlines_leave_is_said_where_no_execution_time_is_written(tmp_path: Path) -> None:
+    text = ROBOT.replace("rate: 10 Hz, wcet: 5 ms", "rate: 3 Hz").replace("deadline: 400 ms", "deadline: 500 ms")
+    lookup = _look_up(tmp_path, text.replace("timing: {rate: 100 Hz, wcet: 1 ms}", "timing: {behaviour: event}"))
+    nodes = lookup.architecture.nodes
+    left = {
+        name: [_read(line) for line in list_time_left(lookup, list_own_activities(lookup, nodes[name]))]
+        for name in nodes
+    }
+    assert left == {
+        "camera": [],
+        "stop": ["less than 333 ms a run, at 3 Hz", "Sees and stops 500 ms: <= 141 ms left, together with odometry"],
+        "odometry": ["nothing that is written limits it"],
+    }
+    reentrant = _look_up(
+        tmp_path, text.replace("{implements: stop,", "{implements: stop, reentrant: true, threads: 2,")
+    )
+    found = list_time_left(reentrant, list_own_activities(reentrant, reentrant.architecture.nodes["stop"]))
+    assert list(map(_read, found)) == ["Sees and stops 500 ms: <= 141 ms left"]
+    sections = {
+        each.title: each.blocks for each in make_flow_sections(lookup, lookup.architecture.components["act.stop"])
+    }
+    _, bullets = sections["How long it may take"]
+    assert isinstance(bullets, Bullets)
+    lines = tuple(map(_read, bullets.items))
+    assert lines == tuple(left["stop"]) == dict(make_card(lookup, "node", "stop").lists)["how long it may take"]
+
+
+def test_it_is_said_who_reads_from_an_element_and_who_reads_from_those(tmp_path: Path) -> None:
+    text = ROBOT.replace("pose: odometry.pose}", "pose: {from: odometry.pose, optional: true}}").replace(
+        "outputs: {halt", "outputs: {word: Image, halt"
+    )
+    text = text.replace("hosts:", "  log: {implements: log, start: {after: camera}}\nhosts:").replace(
+        "groups:\n", "groups:\n  out: {components: {log: {inputs: {word: stop.word}}}}\n"
+    )
+    lookup = _look_up(tmp_path, text)
+    command = "archgen impact --component {} says which deadlines, use cases and requirements rest on it"
+    expected = {
+        "see.camera": [
+            "Read from it (1): Stop",
+            "Read from those (1): Log",
+            "Wait for it at the start (1): log",
+            command.format("see.camera"),
+        ],
+        "act.odometry": [
+            "Read from it (1): Stop",
+            "Read from those (1): Log",
+            "Can do without it (1): Stop",
+            command.format("act.odometry"),
+        ],
+        "out.log": [],
+    }
+    found = {name: list(map(_read, list_reliance(lookup, lookup.architecture.components[name]))) for name in expected}
+    assert found == expected
+    lines = list(map(_read, list_reliance(lookup, lookup.architecture.nodes["camera"])))
+    assert lines == expected["see.camera"]
+    assert dict(make_card(lookup, "node", "camera").lists)["what rests on it"] == tuple(lines)
+
+
 def test_without_timing_there_is_nothing(tmp_path: Path) -> None:
     lookup = make_lookup(_look_up(tmp_path).architecture)
     assert list_flow_rows(lookup, ()) == ([], [])
-    assert make_flow_sections(lookup, "stop", "stop", ()) == []
+    assert make_flow_sections(lookup, lookup.architecture.nodes["stop"]) == []
 
 
 def test_of_a_way_that_nobody_would_write_as_a_chain_its_command_is_said(tmp_path: Path) -> None:

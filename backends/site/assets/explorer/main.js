@@ -18,7 +18,7 @@
 
   const store = archgenExplorer.makeState((problems) => render(problems ?? []), begin);
   const { state } = store;
-  const actions = { state, colours, level: () => level, change: store.change, step, save, say: (text) => sayOnce(text), toggleAll, toggle, openHome, showAll, focus: focusOn,
+  const actions = { state, colours, level: () => level, change: store.change, step, save, say: (text) => sayOnce(text), toggleAll, toggle, openHome, showAll, showWays, focus: focusOn,
     pick, pickBox, pickArrow, pickedName: () => (choice.picked?.kind === "host" ? "" : choice.picked?.id ?? "") };
   const camera = archgenExplorer.makeCamera(stage, map, (view) => minimap.follow(view), ({ x, y, zoom }) => store.moved([x, y, zoom]));
   const minimap = archgenExplorer.makeMinimap(camera, stage);
@@ -160,6 +160,15 @@
     const way = ends && choice.lit && closedWay !== state.sel ? durations.measure(ends) : null;
     if (way) panel.showWay(way, state.sel);
     return Boolean(way);
+  }
+
+  // What the way that the panel tells goes through is open on the map.
+  function showWays(sel) {
+    const { ends } = select(sel);
+    const rows = (ends && durations.measure(ends)?.rows) ?? [];
+    const passed = rows.flatMap(({ activity }) => (level.members === model.nodes ? [model.nodes[activity.node]] : activity.components.map((at) => model.components[at])));
+    const around = passed.flatMap((each) => level.aroundOf(each)).map(({ id }) => id);
+    store.change({ sel, at: null, open: archgenExplorer.unique([...state.open, ...around]) });
   }
 
   // Elements of another kind than the level shows lead to theirs.

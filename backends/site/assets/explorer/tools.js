@@ -102,7 +102,7 @@ archgenExplorer.makeTools = function (model, actions) {
   wayForm.addEventListener("submit", (event) => {
     event.preventDefault();
     wayPanel.hidePopover();
-    actions.change({ sel: `${fromField.lastChild.value.trim()}..${toField.lastChild.value.trim()}`, at: null });
+    actions.showWays(`${fromField.lastChild.value.trim()}..${toField.lastChild.value.trim()}`);
   });
 
   // --- link, saving, list ---------------------------------------------------------------------------------------

@@ -9,9 +9,6 @@ const archgenSearch = (function () {
     chain: 6, partner: 6, page: 5, chapter: 4, port: 2, field: 2, connection: 1 };
   const FEW = 8; // With fewer exact results, words with one wrong letter are looked for as well.
   const LONGEST = 60; // Longer words are compared as they are: the pattern of all their mistakes grows with the square.
-  // Words of questions, left out where others stand beside them: "who reads the odometry" asks for the odometry.
-  const QUESTION_WORDS = new Set(("a an and are at by does do for from give gives has have how i in into is it my of on or read reads send sends " +
-    "run runs takes the to use uses what when where which who whom whose why with").split(" "));
   const MOST_NEAR = 12; // More words than that no longer help to find what was meant.
 
   const kinds = new Map(); // kind -> { kind, weight, lines, folded, places, texts }
@@ -19,7 +16,7 @@ const archgenSearch = (function () {
   const seenTokens = new Set();
   const selectors = new Set(); // owner:certh
   let wordList = null;
-  const settings = { parts: [], count: 0, open: [], examples: [] };
+  const settings = { parts: [], count: 0, open: [], examples: [], questionWords: [] };
 
   // Small letters without accents and invisible characters, on both sides.
   function fold(text) {
@@ -116,7 +113,7 @@ const archgenSearch = (function () {
   function readQuery(query) {
     const terms = [];
     const pieces = query.split(/\s+/);
-    const said = pieces.filter((piece) => piece && !QUESTION_WORDS.has(fold(piece)));
+    const said = pieces.filter((piece) => piece && !settings.questionWords.includes(fold(piece)));
     for (const piece of said.length ? said : pieces) {
       const small = fold(piece);
       if (small.includes(":") && [...selectors].some((key) => key.startsWith(small))) {
