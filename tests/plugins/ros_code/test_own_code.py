@@ -624,7 +624,7 @@ def test_two_packages_swap_their_languages_in_one_run(tmp_path: Path) -> None:
     assert "error" not in _swap(tmp_path, "cpp", "python", 0)
     assert "MINE" in own.read_text("utf-8")
     made = {each.parent.name: each.name for each in (tmp_path / "ws/src").rglob("*") if each.name in BUILT_BY}
-    assert made == {"rt_front": "CMakeLists.txt", "rt_rear": "setup.py"}
+    assert made == {"rt_front": "CMakeLists.txt", "rt_rear": "setup.py", "rt_msgs": "CMakeLists.txt"}
     assert _swap(tmp_path, "cpp", "python", 0, "--check") == ""
 
 
