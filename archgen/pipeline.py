@@ -27,8 +27,7 @@ from archgen.checking.derived_projects import (
     stand_in_variants,
     transform_project,
 )
-from archgen.checking.linked_project import PartMemory
-from archgen.checking.merged_project import merge_project
+from archgen.checking.linked_project import PartMemory, merge_project
 from archgen.diagnostics import Diagnostic
 from archgen.project import LoadedProject, ParsedSlices
 from archgen.timing.run_analysis import AnalysisMemory

@@ -107,7 +107,7 @@ def _write_trace(
     """Write the run in which a chain was latest."""
     from archgen.emit.data.trace_events import format_trace
     from archgen.products.product_writing import write_product_file
-    from archgen.simulation.analysis_bounds import find_publish_pauses
+    from archgen.simulation.chain_witnesses import find_publish_pauses
     from archgen.simulation.schedule_log import record_schedule
 
     observed = observations.chains[chain_id]

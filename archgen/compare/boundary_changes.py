@@ -6,7 +6,6 @@ from collections import Counter
 from collections.abc import Iterable, Iterator, Mapping
 
 from archgen.analyses.qos_compatibility import find_qos_conflicts
-from archgen.compare.architecture_version import ArchitectureVersion
 from archgen.compare.comparison import BoundaryChange, BoundaryKind, FigureChange, FigureKey, WireNames
 from archgen.compare.interface_figures import (
     RECEIVER_NAMES,
@@ -17,7 +16,7 @@ from archgen.compare.interface_figures import (
 )
 from archgen.compare.matched_ids import MatchedIds
 from archgen.compare.timing_pair import TimingPair
-from archgen.compare.version_pair import VersionPair
+from archgen.compare.version_pair import ArchitectureVersion, VersionPair
 from archgen.frozen import dataclass, replace
 from archgen.grouping import group_pairs
 from archgen.model.node import Qos
@@ -293,7 +292,9 @@ def _follow_takers(changes: Iterable[BoundaryChange]) -> Iterator[BoundaryChange
     lost, gained = (
         {
             key: changes_of_key[0]
-            for key, changes_of_key in _group_by_giver(change_list, kind).items()
+            for key, changes_of_key in group_pairs(
+                ((change.interface_id, change.givers), change) for change in change_list if change.kind == kind
+            ).items()
             if len(changes_of_key) == 1
         }
         for kind in ("removed", "added")
@@ -306,9 +307,3 @@ def _follow_takers(changes: Iterable[BoundaryChange]) -> Iterator[BoundaryChange
             concerned = change.concerned_partners | lost[key].concerned_partners
             takers = lost[key].takers
             yield replace(change, kind="changed", old_takers=takers, figures=(), concerned_partners=concerned)
-
-
-def _group_by_giver(
-    changes: Iterable[BoundaryChange], kind: str
-) -> Mapping[tuple[str, tuple[str, ...]], list[BoundaryChange]]:
-    return group_pairs(((change.interface_id, change.givers), change) for change in changes if change.kind == kind)

@@ -12,7 +12,7 @@ from archgen.cache.program_stamp import stamp_program
 from archgen.frozen import replace
 from archgen.history import workers
 from archgen.history.history_points import point_from_data, point_to_data
-from archgen.history.project_commits import HistoryInterval, ProjectCommit, list_commits
+from archgen.history.project_commits import HistoryInterval, list_commits
 from archgen.model.project_history import History, HistoryPoint
 from archgen.project import find_tracked_project
 
@@ -80,12 +80,8 @@ def count_history(
         points_by_tree |= {commit.tree_id: point for commit, point in zip(missing.values(), counted, strict=True)}
         # Cached points of trees that are not on this line are kept: they may belong to other branches.
         point_cache.store_points({tree: point_to_data(point) for tree, point in points_by_tree.items()})
-    points = tuple(_at_commit(commit, points_by_tree[commit.tree_id]) for commit in commit_line)
+    points = tuple(replace(points_by_tree[commit.tree_id], commit=commit.id, day=commit.day) for commit in commit_line)
     return History(points, interval, whole=not tracked_project.objects.repository.is_shallow)
-
-
-def _at_commit(commit: ProjectCommit, point: HistoryPoint) -> HistoryPoint:
-    return replace(point, commit=commit.id, day=commit.day)
 
 
 def _read_cached_point(data: dict[str, object]) -> HistoryPoint | None:

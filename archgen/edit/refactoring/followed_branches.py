@@ -9,9 +9,9 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 
 from archgen.checking.reference_index import Element
-from archgen.compare.architecture_version import ArchitectureVersion
 from archgen.compare.kinds import ELEMENT_KINDS
 from archgen.compare.match_elements import match_elements
+from archgen.compare.version_pair import ArchitectureVersion
 from archgen.diagnostics import Span
 from archgen.edit.element_edit import EditRefusedError, FileEdit
 from archgen.edit.refactoring.element_move import plan_move
@@ -20,7 +20,7 @@ from archgen.edit.refactoring.judged_version import JudgedVersion, judge_edited,
 from archgen.edit.refactoring.moved_lines import EntryMove, MovedLines
 from archgen.edit.refactoring.renamed_ids import RenamedIds
 from archgen.frozen import NamedTuple, dataclass, field
-from archgen.merge.branch_merge import FileConflict, FollowedBranches
+from archgen.merge.branch_results import FileConflict, FollowedBranches
 from archgen.merge.tree_merge import MappingValue, MergedValue, read_merged_value
 from archgen.pipeline import CheckedProject, VersionCache
 from archgen.syntax.yaml_tree import MappingNode, YamlNode, find_value, list_entries

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 from archgen.diagnostics import Diagnostic
 from archgen.link import mapping_values, sanity_checks
-from archgen.link.inner_names import find_inner_component
+from archgen.link.reference_resolution import find_inner_component
 from archgen.link.value_readers import read_values
 from archgen.model.start_up import ReadyConditions, StartTarget, StartUp
 from archgen.syntax.yaml_tree import MappingEntry, MappingNode, ScalarNode, SequenceNode, list_entries

@@ -13,16 +13,17 @@ from typing import TYPE_CHECKING
 from archgen.diagnostics import Diagnostic, Label, find_closest, first_written_span
 from archgen.frozen import dataclass, replace
 from archgen.link import mapping_values
-from archgen.link.data_types.field_reading import TypeReading, read_type_content
 from archgen.link.data_types.field_types import (
     FieldTypeReader,
+    OversizedType,
     TypeMention,
     TypeSources,
+    add_used_types,
     find_unbound_names,
     is_bound_name,
     list_held_names,
 )
-from archgen.link.data_types.used_types import OversizedType, add_used_types
+from archgen.link.data_types.message_definitions import TypeReading, read_type_content
 from archgen.link.element_outline import ElementOutline
 from archgen.link.promise_reading import read_deprecation
 from archgen.link.value_readers import read_values

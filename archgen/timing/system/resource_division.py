@@ -7,9 +7,9 @@ from collections.abc import Iterable, Iterator
 
 from archgen.frozen import replace
 from archgen.timing.system.core_placement import ProcessingResource
-from archgen.timing.system.core_sets import ThreadUnit
 from archgen.timing.system.thread_pools import (
     ThreadPool,
+    ThreadUnit,
     fills_cores,
     find_crowded_pools,
     find_serial_process,
