@@ -22,10 +22,10 @@ from archgen.link.declare.frame_declaration import declare_frames
 from archgen.link.declare.handed_parameters import HandedParameters
 from archgen.link.declare.node_declaration import NodeContext, declare_nodes, resolve_implements
 from archgen.link.declare.section_declaration import declare_use_cases, declare_variants
+from archgen.link.declare.timing_declaration import TimingMerger, find_shared_components
 from archgen.link.declare.type_declaration import DeclaredTypes
 from archgen.link.element_outline import ElementOutline, build_outline, diagnose_undeclared_inputs
 from archgen.link.link_memory import LinkMemory
-from archgen.link.merged_timing import TimingMerger, find_shared_components
 from archgen.link.parameter_texts import flatten_parameters
 from archgen.link.reference_resolution import SECTIONS_OF_PLAIN_NAMES, HeardReferences, ReferenceResolver
 from archgen.model.architecture import Architecture

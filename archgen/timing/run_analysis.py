@@ -21,8 +21,7 @@ from archgen.timing.rates.link_traffic import find_link_loads, find_topic_loads
 from archgen.timing.rates.output_rates import find_rates
 from archgen.timing.rates.service_waiting import find_service_loads
 from archgen.timing.system.activity_builder import BuiltParts
-from archgen.timing.system.core_placement import find_resources
-from archgen.timing.system.resource_division import split_resources
+from archgen.timing.system.core_placement import find_resources, split_resources
 from archgen.timing.system.system_builder import build_system as build
 from archgen.timing.system.timing_system import TimingSystem
 

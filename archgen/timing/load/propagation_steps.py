@@ -21,8 +21,7 @@ from archgen.timing.load.single_cores import SingleCores, find_single_cores
 from archgen.timing.load.transactions import find_transactions
 from archgen.timing.load.waiting_threads import model_roaming_work
 from archgen.timing.load.whole_hosts import HostLimit, find_whole_hosts
-from archgen.timing.system.core_placement import ProcessingResource
-from archgen.timing.system.resource_division import split_resources
+from archgen.timing.system.core_placement import ProcessingResource, split_resources
 from archgen.timing.system.timing_system import Arc, find_request, is_taken_answer
 from archgen.timing.system.trigger_graph import has_own_rate
 
