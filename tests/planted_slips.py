@@ -7,8 +7,8 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
 
+from archgen.compare.architecture_version import ArchitectureVersion
 from archgen.compare.compare_versions import compare_versions
-from archgen.compare.version_pair import ArchitectureVersion
 from archgen.diagnostics.suggested_fixes import apply_edits, suggest_fix
 from archgen.model.architecture import Architecture
 from archgen.pipeline import CheckedProject, judge_project

@@ -6,7 +6,7 @@ effects on connections (`connection_maps`). `change_listing` stops there; `compa
 changes are one item to people.
 """
 
+from archgen.compare.architecture_version import ArchitectureVersion
 from archgen.compare.comparison import ChainChange, Change, Comparison, PartnerBreak
-from archgen.compare.version_pair import ArchitectureVersion
 
 __all__ = ["ArchitectureVersion", "ChainChange", "Change", "Comparison", "PartnerBreak"]

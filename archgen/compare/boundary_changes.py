@@ -6,6 +6,7 @@ from collections import Counter
 from collections.abc import Iterable, Iterator, Mapping
 
 from archgen.analyses.qos_compatibility import find_qos_conflicts
+from archgen.compare.architecture_version import ArchitectureVersion
 from archgen.compare.comparison import BoundaryChange, BoundaryKind, FigureChange, FigureKey, WireNames
 from archgen.compare.interface_figures import (
     RECEIVER_NAMES,
@@ -16,7 +17,7 @@ from archgen.compare.interface_figures import (
 )
 from archgen.compare.matched_ids import MatchedIds
 from archgen.compare.timing_pair import TimingPair
-from archgen.compare.version_pair import ArchitectureVersion, VersionPair
+from archgen.compare.version_pair import VersionPair
 from archgen.frozen import dataclass, replace
 from archgen.grouping import group_pairs
 from archgen.model.node import Qos

@@ -6,6 +6,7 @@ from collections import defaultdict
 from collections.abc import Mapping
 
 from archgen.compare import change_sentences, changed_keys, element_sentences
+from archgen.compare.architecture_version import ArchitectureVersion
 from archgen.compare.comparison import Change
 from archgen.compare.connection_maps import ConnectionMap, RewiredInput, find_rewired_inputs, map_connections
 from archgen.compare.element_listing import list_elements
@@ -13,7 +14,7 @@ from archgen.compare.key_phrases import title_partners
 from archgen.compare.kinds import KIND_ORDER
 from archgen.compare.match_elements import match_elements
 from archgen.compare.matched_ids import MatchedIds
-from archgen.compare.version_pair import ArchitectureVersion, ComparedElement, ElementKey, VersionPair
+from archgen.compare.version_pair import ComparedElement, ElementKey, VersionPair
 from archgen.diagnostics.natural_order import NaturalOrder, order_naturally
 from archgen.frozen import dataclass, field, replace
 from archgen.model.architecture import Architecture

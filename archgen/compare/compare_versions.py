@@ -9,6 +9,7 @@ from collections.abc import Hashable, Iterable, Iterator, Mapping, Sequence
 from fractions import Fraction
 from typing import Literal
 
+from archgen.compare.architecture_version import ArchitectureVersion
 from archgen.compare.asked_limits import compare_limits
 from archgen.compare.boundary_changes import find_boundary_changes
 from archgen.compare.breaking_changes import find_idle_acceptances, mark_breaking_changes, stricter_policy
@@ -31,7 +32,6 @@ from archgen.compare.timing_pair import (
     is_rewording,
 )
 from archgen.compare.type_edits import trace_origins
-from archgen.compare.version_pair import ArchitectureVersion
 from archgen.diagnostics import Diagnostic, Severity
 from archgen.diagnostics.finding_identity import identify_finding, match_findings
 from archgen.frozen import NamedTuple, replace

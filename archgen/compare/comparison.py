@@ -4,9 +4,10 @@ from __future__ import annotations
 
 from typing import Literal
 
+from archgen.compare.architecture_version import ArchitectureVersion
 from archgen.compare.matched_ids import MatchedIds
 from archgen.compare.review_facts import ReviewFacts
-from archgen.compare.version_pair import ArchitectureVersion, VersionPair
+from archgen.compare.version_pair import VersionPair
 from archgen.diagnostics import Diagnostic, Severity
 from archgen.frozen import NamedTuple, dataclass, field
 from archgen.model.node import Qos

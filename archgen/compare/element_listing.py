@@ -7,13 +7,14 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 
+from archgen.compare.architecture_version import ArchitectureVersion
 from archgen.compare.kinds import ELEMENT_KINDS
 from archgen.compare.kinds.key_spec import ReadContext, key_values
 from archgen.compare.kinds.kind_spec import KindSpec
 from archgen.compare.kinds.ros_kinds import NODE, PORT, NodePort
 from archgen.compare.matched_ids import MatchedIds
 from archgen.compare.normal_values import last_part
-from archgen.compare.version_pair import ArchitectureVersion, ComparedElement, ElementKey
+from archgen.compare.version_pair import ComparedElement, ElementKey
 from archgen.diagnostics import NO_SPAN
 from archgen.model.architecture import Architecture
 from archgen.model.node import Node, PortUse

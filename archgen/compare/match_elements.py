@@ -10,12 +10,12 @@ from collections import defaultdict
 from collections.abc import Hashable, Iterator, Mapping, Sequence
 from typing import Any
 
+from archgen.compare.architecture_version import ArchitectureVersion
 from archgen.compare.element_likeness import CERTAIN, Feature, FeatureMap, find_likely_pairs
 from archgen.compare.element_relations import ElementRelations
 from archgen.compare.kinds import ELEMENT_KINDS, MATCHING_ORDER
 from archgen.compare.kinds.kind_spec import KindSpec
 from archgen.compare.matched_ids import MatchedIds
-from archgen.compare.version_pair import ArchitectureVersion
 from archgen.model.architecture import Architecture
 from archgen.model.component import Component, list_component_ports
 from archgen.model.path_resolver import title_from_id

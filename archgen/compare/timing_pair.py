@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 
+from archgen.compare.architecture_version import ArchitectureVersion
 from archgen.compare.comparison import Change
 from archgen.compare.kinds import Effect, find_effect
-from archgen.compare.version_pair import ArchitectureVersion
 from archgen.frozen import dataclass
 from archgen.model.architecture import Architecture
 from archgen.timing.analysis import Analysis, HostLoad, LinkLoad

@@ -10,9 +10,10 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 
 from archgen import pipeline
+from archgen.compare.architecture_version import ArchitectureVersion
 from archgen.compare.element_listing import list_elements
 from archgen.compare.matched_ids import MatchedIds
-from archgen.compare.version_pair import MAPPED_KEY, ArchitectureVersion, ComparedElement
+from archgen.compare.version_pair import MAPPED_KEY, ComparedElement
 from archgen.diagnostics import Diagnostic, Severity
 from archgen.frozen import dataclass, field
 from archgen.model.architecture import Architecture

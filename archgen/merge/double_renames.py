@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 
+from archgen.compare.architecture_version import ArchitectureVersion
 from archgen.compare.kinds import ELEMENT_KINDS, MATCHING_ORDER
 from archgen.compare.match_elements import match_elements
-from archgen.compare.version_pair import ArchitectureVersion
 from archgen.diagnostics import NO_SPAN, Span
 from archgen.frozen import NamedTuple
 from archgen.model.architecture import Architecture

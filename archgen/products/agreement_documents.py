@@ -27,8 +27,8 @@ from archgen.timing.search.chain_budgets import MAX_SHARE_TRIES, SharedBudget, U
 from archgen.timing.search.change_trials import ChangeTrials
 from archgen.views import inline_text
 from archgen.views.agreement.general_sections import BudgetFinder
+from archgen.views.agreement.interface_record import SignedTag
 from archgen.views.agreement.partner_agreement import PartnerAgreement, make_agreement
-from archgen.views.agreement.term_changes import SignedTag
 from archgen.views.lookup import Lookup
 from archgen.views.picture_shapes import Graph
 from archgen.views.shapes import Paragraph

@@ -19,7 +19,7 @@ from archgen.project.project_tracking import load_at_commit
 from archgen.regular_files import holds_bytes
 from archgen.syntax import yaml_parser
 from archgen.syntax.yaml_tree import MappingNode
-from archgen.views.agreement.term_changes import InterfaceRecord
+from archgen.views.agreement.interface_record import InterfaceRecord
 
 _HEAD_LINE = "# What two partners agreed on. `archgen sign` writes `signed`: edits of it by hand are found.\n"
 

@@ -20,7 +20,7 @@ from archgen.products.output_options import OutputOptions
 
 if TYPE_CHECKING:
     from archgen.model.partner_interfaces import PartnerPair
-    from archgen.views.agreement.term_changes import SignedTag
+    from archgen.views.agreement.interface_record import SignedTag
     from archgen.views.lookup import Lookup
     from archgen.views.pages.report_outline import DetailLevel, DocumentEdition
     from archgen.views.pages.variant_chapter import VariantDifference
@@ -190,7 +190,7 @@ def locate_repository(checked_project: CheckedProject) -> SourceRepository | Non
 def list_signed_tags(checked_project: CheckedProject) -> Mapping[PartnerPair, tuple[SignedTag, ...]]:
     """Return the tags that record signatures of two partners, newest first, by pairs in the order of their declaration."""
     from archgen.git.tag_list import list_tags_below
-    from archgen.views.agreement.term_changes import SignedTag
+    from archgen.views.agreement.interface_record import SignedTag
 
     order = {partner: number for number, partner in enumerate(checked_project.architecture.partners)}
     tags: dict[PartnerPair, tuple[SignedTag, ...]] = {}

@@ -17,7 +17,7 @@ from archgen.pipeline import CheckedProject, VersionCache
 from archgen.products import compared_versions
 from archgen.products.compared_versions import ProjectVersion
 from archgen.project import ProjectNotFoundError
-from archgen.views.agreement.term_changes import SignedTag
+from archgen.views.agreement.interface_record import SignedTag
 
 
 def find_signed_tags(root: Path, first: str, second: str) -> tuple[SignedTag, ...]:

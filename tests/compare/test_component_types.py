@@ -9,12 +9,12 @@ import pytest
 
 from archgen import pipeline
 from archgen.compare import Comparison
+from archgen.compare.architecture_version import ArchitectureVersion
 from archgen.compare.edits import list_edits
 from archgen.compare.kinds.component_type_kind import COMPONENT_TYPE
 from archgen.compare.kinds.key_spec import ReadContext
 from archgen.compare.matched_ids import MatchedIds
 from archgen.compare.type_edits import TypeKey, find_type_edits, trace_origins
-from archgen.compare.version_pair import ArchitectureVersion
 from archgen.emit.data.comparison_json import write_comparison_json
 from archgen.views.changes.comparison_document import ReadingErrors
 from tests.compare.conftest import Compared

@@ -7,10 +7,10 @@ from pathlib import Path
 import pytest
 
 from archgen import pipeline
+from archgen.compare.architecture_version import ArchitectureVersion
 from archgen.compare.element_relations import ElementRelations
 from archgen.compare.kinds import ELEMENT_KINDS
 from archgen.compare.match_elements import match_elements
-from archgen.compare.version_pair import ArchitectureVersion
 from archgen.model.architecture import Architecture
 
 ROBOT = """\

@@ -12,7 +12,7 @@ from archgen.pipeline import check_project
 from archgen.products.project_views import list_signed_tags
 from archgen.views.agreement import exchange_tables
 from archgen.views.agreement.exchange_tables import gather_exchanges
-from archgen.views.agreement.term_changes import SignedTag
+from archgen.views.agreement.interface_record import SignedTag
 from archgen.views.lookup import DocumentScope, Lookup, make_lookup
 from archgen.views.pages import partner_pages
 from archgen.views.shapes import Facts, Inlines, Page, Paragraph, Table

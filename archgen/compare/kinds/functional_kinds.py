@@ -6,6 +6,7 @@ from collections.abc import Callable, Mapping
 from operator import attrgetter
 from typing import Any
 
+from archgen.compare.architecture_version import ArchitectureVersion
 from archgen.compare.element_likeness import letter_pairs
 from archgen.compare.kinds.key_readers import is_mapped
 from archgen.compare.kinds.key_spec import CO_OWNERS, Effect, KeySpec, ReadContext, key_values, read_owner
@@ -25,7 +26,7 @@ from archgen.compare.kinds.kind_spec import (
     reference_feature,
     text_feature,
 )
-from archgen.compare.version_pair import MAPPED_KEY, ArchitectureVersion
+from archgen.compare.version_pair import MAPPED_KEY
 from archgen.model.component import Component, Input, Output
 
 

@@ -8,9 +8,9 @@ from enum import Enum, IntEnum, auto
 from functools import cached_property
 from typing import Any
 
+from archgen.compare.architecture_version import ArchitectureVersion
 from archgen.compare.matched_ids import MatchedIds
 from archgen.compare.normal_values import is_unset
-from archgen.compare.version_pair import ArchitectureVersion
 from archgen.frozen import dataclass
 from archgen.grouping import group_pairs
 from archgen.model.architecture import Architecture

@@ -10,6 +10,7 @@ from functools import cache
 from operator import attrgetter
 from typing import Any
 
+from archgen.compare.architecture_version import ArchitectureVersion
 from archgen.compare.element_likeness import letter_pairs, word_set
 from archgen.compare.element_relations import ElementRelations
 from archgen.compare.kinds.key_readers import READERS
@@ -22,7 +23,7 @@ from archgen.compare.normal_values import (
     parameter_leaves,
     unordered_values,
 )
-from archgen.compare.version_pair import ArchitectureVersion, ElementKey
+from archgen.compare.version_pair import ElementKey
 from archgen.frozen import dataclass, field
 from archgen.language.language_tables import KEY_FACTS, KIND_EFFECTS, SECTION_KINDS, KeyFacts
 from archgen.model.component import Component, list_component_ports

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from typing import TypeVar
 
+from archgen.compare.architecture_version import ArchitectureVersion
 from archgen.compare.element_likeness import letter_pairs
 from archgen.compare.element_relations import ElementRelations, project_messages
 from archgen.compare.kinds.key_readers import is_own_type
@@ -27,7 +28,6 @@ from archgen.compare.kinds.kind_spec import (
     value_feature,
 )
 from archgen.compare.normal_values import unordered_values
-from archgen.compare.version_pair import ArchitectureVersion
 from archgen.derivation.port_endpoints import flow_of_use
 from archgen.derivation.wire.wire_names import NodeNames
 from archgen.diagnostics import NO_SPAN, Span

@@ -9,9 +9,9 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 
 from archgen.checking.reference_index import Element
+from archgen.compare.architecture_version import ArchitectureVersion
 from archgen.compare.kinds import ELEMENT_KINDS
 from archgen.compare.match_elements import match_elements
-from archgen.compare.version_pair import ArchitectureVersion
 from archgen.diagnostics import Span
 from archgen.edit.element_edit import EditRefusedError, FileEdit
 from archgen.edit.refactoring.element_move import plan_move

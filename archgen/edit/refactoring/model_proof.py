@@ -9,11 +9,11 @@ from collections import Counter
 from collections.abc import Iterator, Mapping
 
 from archgen.checking.reference_index import list_outer_ids
+from archgen.compare.architecture_version import ArchitectureVersion
 from archgen.compare.element_listing import list_elements
 from archgen.compare.kinds import ELEMENT_KINDS
 from archgen.compare.matched_ids import MatchedIds
 from archgen.compare.normal_values import ElementTitle
-from archgen.compare.version_pair import ArchitectureVersion
 from archgen.diagnostics import Diagnostic
 from archgen.edit.refactoring.renamed_ids import RenamedIds
 from archgen.frozen import NamedTuple

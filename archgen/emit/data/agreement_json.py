@@ -10,8 +10,8 @@ from archgen.diagnostics import format_json
 from archgen.model.agreed_terms import find_agreement
 from archgen.views.agreement.agreement_content import AgreementContent
 from archgen.views.agreement.general_sections import list_start_steps, list_variant_differences
+from archgen.views.agreement.interface_record import InterfaceRecord
 from archgen.views.agreement.interface_sections import list_word_rows
-from archgen.views.agreement.term_changes import InterfaceRecord
 
 FORMAT_VERSION = 1
 

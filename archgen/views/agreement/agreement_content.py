@@ -7,7 +7,8 @@ from collections.abc import Callable, Mapping
 from archgen.frozen import dataclass, field
 from archgen.model.architecture import Architecture
 from archgen.timing.search.chain_budgets import SharedBudget
-from archgen.views.agreement.term_changes import AgreementChanges, InterfaceRecord, SignatureRecord, mark_changed_names
+from archgen.views.agreement.interface_record import InterfaceRecord, SignatureRecord
+from archgen.views.agreement.term_changes import AgreementChanges, mark_changed_names
 from archgen.views.graphs.element_boxes import join_owner_titles
 from archgen.views.lookup import Lookup
 from archgen.views.picture_shapes import Graph

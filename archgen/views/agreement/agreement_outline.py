@@ -19,17 +19,12 @@ from archgen.views.agreement.general_sections import (
     write_terms_section,
     write_use_case_section,
 )
+from archgen.views.agreement.interface_record import InterfaceRecord, write_signature_table
 from archgen.views.agreement.interface_sections import SectionWriter
 from archgen.views.agreement.interface_terms import InterfaceTerms
 from archgen.views.agreement.promise_rows import RATE, join_figures
 from archgen.views.agreement.setting_section import list_changed_settings, write_setting_section
-from archgen.views.agreement.term_changes import (
-    NAME_KIND,
-    AgreementChanges,
-    InterfaceRecord,
-    write_signature_table,
-    write_signed_kind,
-)
+from archgen.views.agreement.term_changes import NAME_KIND, AgreementChanges, write_signed_kind
 from archgen.views.element_references import message_link
 from archgen.views.graphs.element_boxes import join_owner_titles
 from archgen.views.shapes import (

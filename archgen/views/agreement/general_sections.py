@@ -16,7 +16,8 @@ from archgen.timing.figures.timing_values import TimingValue
 from archgen.timing.search.chain_budgets import SharedBudget
 from archgen.views import inline_text, start_phrases
 from archgen.views.agreement.agreement_content import AgreementContent
-from archgen.views.agreement.term_changes import AgreementChanges, InterfaceRecord
+from archgen.views.agreement.interface_record import InterfaceRecord
+from archgen.views.agreement.term_changes import AgreementChanges
 from archgen.views.graphs.element_boxes import join_owner_titles
 from archgen.views.sequences.sequence_blocks import make_step_table
 from archgen.views.shapes import (

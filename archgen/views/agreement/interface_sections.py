@@ -13,9 +13,9 @@ from archgen.model.node import Endpoint
 from archgen.model.partner_interfaces import PartnerInterface, list_givers
 from archgen.views import inline_text, start_phrases
 from archgen.views.agreement import message_fields
+from archgen.views.agreement.interface_record import InterfaceRecord, SignatureRecord
 from archgen.views.agreement.interface_terms import InterfaceEnd, InterfaceTerms
 from archgen.views.agreement.promise_rows import write_promise_table
-from archgen.views.agreement.term_changes import InterfaceRecord, SignatureRecord
 from archgen.views.element_references import message_link
 from archgen.views.elements.element_names import join_surrounding_titles
 from archgen.views.graphs.element_boxes import join_owner_titles

@@ -16,18 +16,12 @@ from archgen.timing.system import activity_builder
 from archgen.views.agreement.agreement_content import AgreementContent
 from archgen.views.agreement.agreement_outline import outline_agreement
 from archgen.views.agreement.general_sections import BudgetFinder, find_crossing_budgets
+from archgen.views.agreement.interface_record import InterfaceKey, InterfaceRecord, SignatureRecord, SignedTag
 from archgen.views.agreement.interface_terms import InterfaceTerms, gather_terms, interface_title
 from archgen.views.agreement.output_promises import find_unproven_words, list_counted_ports
 from archgen.views.agreement.plain_terms import list_contradictions, list_plain_terms
 from archgen.views.agreement.promise_rows import add_measured
-from archgen.views.agreement.term_changes import (
-    AgreementChanges,
-    InterfaceKey,
-    InterfaceRecord,
-    SignatureRecord,
-    SignedTag,
-    compare_revisions,
-)
+from archgen.views.agreement.term_changes import AgreementChanges, compare_revisions
 from archgen.views.elements import element_names
 from archgen.views.graphs import element_boxes
 from archgen.views.graphs.drawn_level import FlowStyle

@@ -10,9 +10,9 @@ from archgen.model.partner_interfaces import PartnerPair
 from archgen.views import inline_text
 from archgen.views.agreement import exchange_tables
 from archgen.views.agreement.exchange_tables import PartnerExchange, gather_exchanges, pair_title
+from archgen.views.agreement.interface_record import InterfaceRecord, SignedTag, write_signature_table
 from archgen.views.agreement.interface_sections import SectionWriter
 from archgen.views.agreement.interface_terms import InterfaceTerms
-from archgen.views.agreement.term_changes import InterfaceRecord, SignedTag, write_signature_table
 from archgen.views.elements.annotation_facts import list_annotation_facts
 from archgen.views.elements.functional_level import make_component_table
 from archgen.views.graphs.element_boxes import join_owner_titles

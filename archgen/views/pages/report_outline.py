@@ -12,7 +12,7 @@ from archgen.model.partner_interfaces import PartnerPair
 from archgen.model.project_history import History
 from archgen.model.report_settings import ReportSettings
 from archgen.views import inline_text
-from archgen.views.agreement.term_changes import SignedTag
+from archgen.views.agreement.interface_record import SignedTag
 from archgen.views.lookup import Lookup
 from archgen.views.pages import timing_chapter, variant_chapter
 from archgen.views.pages.component_pages import ReportSections
