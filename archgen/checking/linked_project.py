@@ -9,8 +9,6 @@ A loaded project becomes one table first, of its slices and libraries.
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 from archgen import compose, derivation, link, project
 from archgen.checking.all_rules import list_structural_errors
 from archgen.compose.expanded_project import ExpandedProject
@@ -30,6 +28,7 @@ from archgen.model.known_interfaces import Interfaces, guess_distro
 from archgen.model.known_parts import KnownParts
 from archgen.project import LoadedProject
 from archgen.syntax import project_files
+from archgen.syntax.project_files import ProjectFiles
 from archgen.syntax.yaml_tree import MappingNode, ScalarNode
 
 
@@ -77,10 +76,6 @@ def _find_wrong_passes(loaded_project: LoadedProject) -> tuple[Diagnostic, ...]:
     from archgen.passes.patterns.pattern_registry import find_wrong_passes
 
     return tuple(find_wrong_passes(loaded_project.files, loaded_project.sources))
-
-
-if TYPE_CHECKING:
-    from archgen.syntax.project_files import ProjectFiles
 
 
 def load_project_interfaces(
