@@ -27,9 +27,7 @@ from archgen.checking.derived_projects import (
     stand_in_variants,
     transform_project,
 )
-from archgen.checking.linked_project import PartMemory
-from archgen.checking.merged_project import merge_project
-from archgen.diagnostics import Diagnostic
+from archgen.checking.linked_project import PartMemory, merge_project
 from archgen.project import LoadedProject, ParsedSlices
 from archgen.timing.run_analysis import AnalysisMemory
 
@@ -38,7 +36,7 @@ if TYPE_CHECKING:
     from archgen.project import TrackedProject
 
 __all__ = ["SHIPPED_RULES", "CheckedProject", "UnknownVariantError", "VersionCache", "check_at_revision"]
-__all__ += ["check_loaded_project", "check_project", "check_text", "check_tracked_project", "index_all_rules"]
+__all__ += ["check_loaded_project", "check_project", "check_tracked_project", "index_all_rules"]
 __all__ += ["judge_project", "keep_variant_findings", "link_slices", "list_variant_names", "stand_in_variants"]
 __all__ += ["transform_project"]
 
@@ -118,17 +116,6 @@ def _pause_garbage_collection() -> Iterator[None]:
     finally:
         if was_enabled:
             gc.enable()
-
-
-def check_text(text: str) -> tuple[Diagnostic, ...]:
-    """Check a project of one file, given as text; findings call the file `project.yaml`."""
-    # Imported here: a check of files needs none of it.
-    import tempfile
-
-    with tempfile.TemporaryDirectory(prefix="archgen-") as folder:
-        file = Path(folder) / "project.yaml"
-        file.write_text(text, encoding="utf-8")
-        return check_project(file).findings
 
 
 def link_slices(data: Mapping[str, Any]) -> Architecture:

@@ -19,7 +19,7 @@ _ROOT = Path(__file__).resolve().parent.parent
 sys.path.insert(0, str(_ROOT))
 
 from archgen.simulation import simulate_system  # noqa: E402 - the checkout is what is measured
-from archgen.simulation.analysis_bounds import find_publish_pauses  # noqa: E402
+from archgen.simulation.chain_witnesses import find_publish_pauses  # noqa: E402
 from archgen.timing.chains.chain_bounds import bound_all_chains  # noqa: E402
 from archgen.timing.figures.figure_wording import format_duration  # noqa: E402
 from archgen.timing.run_analysis import analyse_architecture  # noqa: E402

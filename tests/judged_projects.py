@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import functools
 import os
+import tempfile
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
@@ -11,6 +12,7 @@ from unittest.mock import patch
 
 from archgen import pipeline
 from archgen.checking.checked_project import CheckedProject
+from archgen.diagnostics import Diagnostic
 
 _ROOT = Path(__file__).resolve().parents[1]
 _RAMCIP = _ROOT / "example_ramcip"
@@ -65,3 +67,11 @@ def _list_states(folder: Path) -> Iterator[tuple[str, int, int]]:
             path = os.path.join(parent, name)  # noqa: PTH118 - hundreds of paths
             state = os.stat(path)  # noqa: PTH116 - as above
             yield path, state.st_mtime_ns, state.st_size
+
+
+def check_text(text: str) -> tuple[Diagnostic, ...]:
+    """Check a project of one file, given as text; findings call the file `project.yaml`."""
+    with tempfile.TemporaryDirectory(prefix="archgen-") as folder:
+        file = Path(folder) / "project.yaml"
+        file.write_text(text, encoding="utf-8")
+        return pipeline.check_project(file).findings

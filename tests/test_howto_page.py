@@ -7,7 +7,7 @@ import re
 import pytest
 
 from archgen.diagnostics.diagnostic import Severity
-from archgen.pipeline import check_text
+from tests.judged_projects import check_text
 from tests.running import ROOT
 
 PAGE = (ROOT / "docs" / "howto.md").read_text(encoding="utf-8")

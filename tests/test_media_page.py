@@ -7,11 +7,10 @@ import re
 import pytest
 
 from archgen.diagnostics.diagnostic import Severity
-from archgen.pipeline import check_text
 from archgen.views.graphs.component_graph import draw_component
 from archgen.views.lookup import make_lookup
 from archgen.views.tables.element_rows import list_element_rows
-from tests.judged_projects import judge_shipped
+from tests.judged_projects import check_text, judge_shipped
 from tests.running import ROOT
 
 PAGE = (ROOT / "docs" / "media.md").read_text(encoding="utf-8")

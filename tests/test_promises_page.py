@@ -7,7 +7,8 @@ import re
 import pytest
 
 from archgen.diagnostics.diagnostic import Severity
-from archgen.pipeline import SHIPPED_RULES, check_text
+from archgen.pipeline import SHIPPED_RULES
+from tests.judged_projects import check_text
 from tests.running import ROOT
 
 PAGE = (ROOT / "docs" / "promises.md").read_text(encoding="utf-8")

@@ -8,7 +8,7 @@ import pytest
 
 from archgen.diagnostics.diagnostic import Severity
 from archgen.language.language_tables import ANNOTATED_KINDS
-from archgen.pipeline import check_text
+from tests.judged_projects import check_text
 from tests.running import ROOT
 
 PAGE = (ROOT / "docs" / "properties.md").read_text(encoding="utf-8")

@@ -13,9 +13,10 @@ from archgen.diagnostics.diagnostic import Diagnostic, Rule, Severity
 from archgen.findings import rule_pages
 from archgen.findings.rule_table import COMPARISON_RULES, FAILED_RULE, index_rules
 from archgen.importers.robot_observation import ObservationOptions, observe_robot
-from archgen.pipeline import SHIPPED_RULES, check_project, check_text
+from archgen.pipeline import SHIPPED_RULES, check_project
 from archgen.products.robot_conformance import hold_against_robots
 from archgen.views.generation.architecture_needs import GENERATION_RULES
+from tests.judged_projects import check_text
 from tests.plugins.recordings.test_bag_observation import Recorded, make_scan, write_topics
 from tests.repositories import repository
 

@@ -14,11 +14,11 @@ from archgen.model.component import Component, PerformanceIndicator
 from archgen.model.deployment import Host
 from archgen.timing.analysis import Analysis, ChainTerm, LateRun, ServiceLoad
 from archgen.timing.chains.chain_bounds import JudgedChain, find_missed_shares, find_open_chains, find_unmet_chains
-from archgen.timing.chains.read_ages import ReadAge, find_read_ages
+from archgen.timing.chains.chain_verdicts import ReadAge, find_read_ages
 from archgen.timing.chains.use_case_times import WholeBound, WholeLimit, bound_wholes, list_limits
 from archgen.timing.figures import figure_wording
 from archgen.timing.figures.figure_wording import format_duration
-from archgen.timing.figures.value_arithmetic import is_boundless, is_known_bound, is_unfound
+from archgen.timing.figures.timing_values import is_boundless, is_known_bound, is_unfound
 from archgen.timing.system.thread_pools import name_lane
 from archgen.timing.system.timing_system import Activity
 
@@ -272,7 +272,7 @@ def _describe_run(chain_id: str, run: LateRun) -> str:
 
 def _describe_bound(analysis: Analysis, late_chain: JudgedChain) -> str:
     """Describe how long a chain takes, or why nobody can say."""
-    from archgen.timing.chains.unfound_bounds import describe_overload, find_unfound_places
+    from archgen.timing.chains.missing_figures import describe_overload, find_unfound_places
 
     bound, deadline = late_chain.bound, late_chain.chain.deadline
     if is_boundless(bound):
@@ -294,7 +294,7 @@ def _label_largest_part(architecture: Architecture, analysis: Analysis, late_cha
     Where a host has too much to do, or leaves no bound to find, the label is at the host: the figures of the elements
     that happen to run there may all be innocent.
     """
-    from archgen.timing.chains.unfound_bounds import find_overloaded_places, find_saturated_links, find_unfound_places
+    from archgen.timing.chains.missing_figures import find_overloaded_places, find_saturated_links, find_unfound_places
 
     for link_id in find_saturated_links(late_chain.terms):
         return Label(architecture.links[link_id].at, "more is sent over it than it carries")

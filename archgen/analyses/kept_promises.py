@@ -16,11 +16,9 @@ from archgen.model.promise import Promise
 from archgen.model.quantity import Quantity
 from archgen.model.ros_distro import is_ros_1
 from archgen.timing.analysis import Analysis, EventPace, find_pace
-from archgen.timing.chains.chain_verdicts import LimitState, judge_lower_limit, judge_upper_limit
-from archgen.timing.chains.read_ages import find_sent_ages
+from archgen.timing.chains.chain_verdicts import LimitState, find_sent_ages, judge_lower_limit, judge_upper_limit
 from archgen.timing.figures.figure_wording import format_duration, format_rate
-from archgen.timing.figures.timing_values import UNKNOWN_VALUE, TimingValue
-from archgen.timing.figures.value_arithmetic import add_values, smallest_value
+from archgen.timing.figures.timing_values import UNKNOWN_VALUE, TimingValue, add_values, smallest_value
 from archgen.timing.system import activity_builder
 from archgen.timing.system.timing_system import Arc
 

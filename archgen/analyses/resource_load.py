@@ -11,7 +11,7 @@ from archgen.model.architecture import Architecture
 from archgen.model.deployment import Link
 from archgen.timing.analysis import Analysis, HostLoad
 from archgen.timing.figures.figure_wording import format_duration, format_number
-from archgen.timing.figures.value_arithmetic import add_values
+from archgen.timing.figures.timing_values import add_values
 from archgen.timing.load.host_loads import activity_share
 from archgen.timing.load.link_queueing import find_longest_sending
 from archgen.timing.system.thread_pools import find_unplaced_pools

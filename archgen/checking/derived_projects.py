@@ -8,8 +8,7 @@ from typing import TYPE_CHECKING
 
 from archgen import project
 from archgen.checking.checked_project import CheckedProject
-from archgen.checking.linked_project import PartMemory
-from archgen.checking.merged_project import MergedProject, merge_project
+from archgen.checking.linked_project import MergedProject, PartMemory, merge_project
 from archgen.checking.project_judging import judge_merged_project
 from archgen.diagnostics import did_you_mean, join_words
 from archgen.findings import instance_findings

@@ -3,34 +3,79 @@
 The day up to which a project's repository has gone: on it rests whether what is deprecated may still be used.
 
 The interface definitions that a project brings itself: files, those in its YAML, those of its types.
+
+A loaded project becomes one table first, of its slices and libraries.
 """
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
-from archgen import compose, derivation, link
-from archgen.checking.merged_project import MergedProject
+from archgen import compose, derivation, link, project
+from archgen.checking.all_rules import list_structural_errors
 from archgen.compose.expanded_project import ExpandedProject
 from archgen.derivation.derived_parts import DerivedParts
 from archgen.diagnostics import Diagnostic
 from archgen.frozen import dataclass, replace
-from archgen.link import element_outline, interface_sources, named_files, node_parameter_files
+from archgen.link import element_outline, interface_sources, named_files, node_parameter_files, slice_merging
 from archgen.link.declare.type_declaration import DeclaredTypes
 from archgen.link.interface_sources import TypeMessages
 from archgen.link.link_memory import LinkMemory
 from archgen.link.node_parameter_files import ReadParameters
 from archgen.link.project_types import declare_project_types
-from archgen.link.reference_listening import HeardReferences
+from archgen.link.reference_resolution import HeardReferences
+from archgen.link.variants import variant_order
 from archgen.model.architecture import Architecture
 from archgen.model.known_interfaces import Interfaces, guess_distro
 from archgen.model.known_parts import KnownParts
 from archgen.project import LoadedProject
 from archgen.syntax import project_files
+from archgen.syntax.project_files import ProjectFiles
 from archgen.syntax.yaml_tree import MappingNode, ScalarNode
 
-if TYPE_CHECKING:
-    from archgen.syntax.project_files import ProjectFiles
+
+@dataclass(frozen=True, slots=True)
+class MergedProject:
+    """A loaded project whose slices and libraries are one table, and what was found on the way."""
+
+    loaded_project: LoadedProject
+    table: MappingNode
+    diagnostics: tuple[Diagnostic, ...]
+    reading_errors: tuple[Diagnostic, ...]
+    damaged_elements: frozenset[str]
+
+    @property
+    def is_folder(self) -> bool:
+        """Whether it is a folder: a project of one file is a whole, and what it names, like its `sources`, lies elsewhere."""
+        return self.loaded_project.first_file == project.PROJECT_FILE
+
+
+def merge_project(loaded_project: LoadedProject) -> MergedProject:
+    """Return a loaded project as one table, with what was found in merging it."""
+    # These errors mean that something is missing in the architecture: the findings that they explain wait, so that one
+    # mistake is reported once.
+    reading_errors = tuple(list_structural_errors(loaded_project.diagnostics))
+    damaged_elements = frozenset(error.element for error in reading_errors if error.element)
+    merged_table, merge_findings = slice_merging.merge_documents(
+        loaded_project.documents, loaded_project.lost_keys, damaged_elements
+    )
+    merged_table, library_findings = slice_merging.merge_libraries(merged_table, loaded_project.libraries)
+    variant_findings = (
+        tuple(variant_order.check_variant_order(merged_table, loaded_project.lost_keys))
+        if "variants" in merged_table.entries
+        else ()
+    )
+    pass_findings = _find_wrong_passes(loaded_project)
+    all_findings = (*merge_findings, *library_findings, *variant_findings, *pass_findings)
+    return MergedProject(loaded_project, merged_table, all_findings, reading_errors, damaged_elements)
+
+
+def _find_wrong_passes(loaded_project: LoadedProject) -> tuple[Diagnostic, ...]:
+    is_folder = loaded_project.first_file == project.PROJECT_FILE
+    if not is_folder or not loaded_project.files.has_path(project.PASS_FOLDER.rstrip("/")):
+        return ()
+    # Imported here: hardly any project has passes of its own.
+    from archgen.passes.patterns.pattern_registry import find_wrong_passes
+
+    return tuple(find_wrong_passes(loaded_project.files, loaded_project.sources))
 
 
 def load_project_interfaces(

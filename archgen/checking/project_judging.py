@@ -13,15 +13,14 @@ from itertools import chain
 from archgen import analyses
 from archgen.checking.all_rules import index_all_rules, list_structural_errors
 from archgen.checking.checked_project import CheckedProject
-from archgen.checking.linked_project import LinkedProject, PartMemory, link_merged_project
-from archgen.checking.merged_project import MergedProject
+from archgen.checking.linked_project import LinkedProject, MergedProject, PartMemory, link_merged_project
 from archgen.diagnostics import Diagnostic, Label, Severity, SourceTexts, Span, find_closest, settle_diagnostics
 from archgen.diagnostics.rule_options import OptionValues
 from archgen.findings import error_aftermath, ignore_comments, instance_findings, rule_table
 from archgen.frozen import NamedTuple, replace
 from archgen.installed_plugins import RULES, list_entries
 from archgen.language.language_tables import PLAIN_SECTIONS
-from archgen.link import hint_checks, named_files, node_parameter_files, report_chapters, verification_files
+from archgen.link import hint_checks, named_files, node_parameter_files, report_chapters
 from archgen.link.known_programs import find_shadowed_packages, find_unlike_programs
 from archgen.link.report_chapters import ReportChapters
 from archgen.model.architecture import Architecture
@@ -48,7 +47,7 @@ def read_named_contents(
         if is_folder
         else ()
     )
-    missing_verifications = verification_files.find_missing_verifications(
+    missing_verifications = named_files.find_missing_verifications(
         linked_project.linked_architecture, loaded_project.files if is_folder else None
     )
     wrong_hints = (
@@ -90,7 +89,7 @@ def judge_merged_project(
     rule_options, option_findings = rule_table.settle_rule_options(loaded_project.rule_options, index_all_rules())
     link_findings = linked_project.link_findings
     if loaded_project.unread_names and link_findings:
-        from archgen.project.unread_slices import blame_unread_files
+        from archgen.project.source_patterns import blame_unread_files
 
         link_findings = tuple(blame_unread_files(link_findings, loaded_project.unread_names))
     all_diagnostics = (

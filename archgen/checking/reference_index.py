@@ -16,7 +16,7 @@ from archgen.frozen import NamedTuple, dataclass, field
 from archgen.grouping import group_pairs
 from archgen.language.language_tables import OFFERS, SECTION_KINDS
 from archgen.link.project_linking import link_type_patterns
-from archgen.link.reference_listening import HeardReferences
+from archgen.link.reference_resolution import HeardReferences
 from archgen.model.component import PATTERN_GROUP
 from archgen.model.path_resolver import PathResolver
 from archgen.model.selector_evaluation import SelectorEvaluator

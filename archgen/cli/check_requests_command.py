@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from archgen.forge.pull_request import OpenRequest
-    from archgen.merge.branch_merge import BranchMerge
+    from archgen.merge.branch_results import BranchMerge
 
 
 @click.command("check-requests")

@@ -9,10 +9,10 @@ import click
 
 from archgen import pipeline, project
 from archgen.compose import list_type_entries
-from archgen.compose.type_expressions import TypeExpression
+from archgen.compose.expanded_project import TypeExpression
 from archgen.compose.type_table import TypeTable, list_generic_names
 from archgen.diagnostics import did_you_mean
-from archgen.link import library_merging, mapping_values, slice_merging
+from archgen.link import mapping_values, slice_merging
 from archgen.pipeline import CheckedProject
 from archgen.project.library_reading import SHIPPED_ID, SHIPPED_PATH, choose_distro, load_shipped_component_types
 from archgen.project.project_loading import load_from_files
@@ -68,7 +68,7 @@ def list_type_names(project_path: Path | None) -> tuple[str, ...]:
     except project.ProjectNotFoundError:
         return ()
     merged_table, _ = slice_merging.merge_documents(loaded_project.documents)
-    merged_table, _ = library_merging.merge_libraries(merged_table, loaded_project.libraries)
+    merged_table, _ = slice_merging.merge_libraries(merged_table, loaded_project.libraries)
     return tuple(list_type_entries(merged_table))
 
 

@@ -12,7 +12,7 @@ from archgen.cli import command_support, shared_options
 from archgen.diagnostics import make_visible
 
 if TYPE_CHECKING:
-    from archgen.merge.branch_merge import BranchMerge
+    from archgen.merge.branch_results import BranchMerge
 
 
 @click.command("merge-check")

@@ -11,7 +11,7 @@ import click
 from archgen.cli import command_support, shared_options
 
 if TYPE_CHECKING:
-    from archgen.merge.branch_merge import BranchMerge
+    from archgen.merge.branch_results import BranchMerge
 
 
 @click.command("merge")

@@ -32,7 +32,7 @@ def command(words: tuple[str, ...], form: str, project: Path | None) -> None:
     A word is an id (`object_recognition`, `sensing.rgbd_camera.rgbd`, `/camera/rgbd`, `R-12`), the end of one, or a
     title in quotes.
     """
-    from archgen.timing.chains.word_resolution import unknown_name_text
+    from archgen.timing.chains.element_index import unknown_name_text
     from archgen.views.elements import element_card, element_names
     from archgen.views.lookup import add_timing, make_lookup
 

@@ -50,7 +50,7 @@ def command(  # noqa: PLR0913, PLR0917 - one for each option
     the same figures; --seed N repeats one run.
     """
     from archgen import simulation
-    from archgen.simulation import analysis_bounds, simulation_json
+    from archgen.simulation import chain_witnesses, simulation_json
     from archgen.simulation import simulation_text as words
     from archgen.simulation.event_loop import EventFloodError
     from archgen.timing.chains.chain_bounds import bound_all_chains
@@ -80,7 +80,7 @@ def command(  # noqa: PLR0913, PLR0917 - one for each option
             seconds,
             seeds if seed is None else range(seed, seed + 1),
             waypoints,
-            analysis_bounds.find_publish_pauses(analysis),
+            chain_witnesses.find_publish_pauses(analysis),
             progress=command_support.make_progress_printer("simulated runs"),
         )
     except EventFloodError as flood:
@@ -107,7 +107,7 @@ def _write_trace(
     """Write the run in which a chain was latest."""
     from archgen.emit.data.trace_events import format_trace
     from archgen.products.product_writing import write_product_file
-    from archgen.simulation.analysis_bounds import find_publish_pauses
+    from archgen.simulation.chain_witnesses import find_publish_pauses
     from archgen.simulation.schedule_log import record_schedule
 
     observed = observations.chains[chain_id]

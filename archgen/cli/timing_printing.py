@@ -23,7 +23,7 @@ from archgen.model.architecture import Architecture
 from archgen.pipeline import CheckedProject
 from archgen.simulation.chain_witnesses import judge_chains
 from archgen.timing.analysis import Analysis, ChainResult
-from archgen.timing.chains import chain_bounds, duerr_bounds, word_resolution
+from archgen.timing.chains import chain_bounds, duerr_bounds, element_index
 from archgen.timing.chains.chain_sensitivity import find_sensitivity
 from archgen.timing.chains.cost_network import CostNetwork
 from archgen.timing.chains.figure_explanations import explain_word
@@ -93,8 +93,8 @@ def print_reasons(request: TimingRequest, word: str) -> None:
     # Chains, hosts and links explain themselves; a node or component stands for its activities.
     if not explain_word(analysis, chains, word):
         try:
-            names = list(word_resolution.resolve_activities(request.architecture, analysis.system, word))
-        except word_resolution.UnknownNameError as error:
+            names = list(element_index.resolve_activities(request.architecture, analysis.system, word))
+        except element_index.UnknownNameError as error:
             raise_usage_error(str(error))
     steps = [line for name in names for line in explain_word(analysis, chains, name)]
     if request.as_json:
@@ -109,9 +109,9 @@ def print_paths(request: TimingRequest, source: str, target: str, path_count: in
     network = CostNetwork.of_analysis(analysis)
     try:
         start, end = (
-            word_resolution.resolve_waypoint(request.architecture, analysis.system, word) for word in (source, target)
+            element_index.resolve_waypoint(request.architecture, analysis.system, word) for word in (source, target)
         )
-    except word_resolution.UnknownNameError as error:
+    except element_index.UnknownNameError as error:
         raise_usage_error(str(error))
     worst = chain_bounds.find_paths_between(network, request.architecture, start, end)
     best = chain_bounds.find_paths_between(network, request.architecture, start, end, "best")

@@ -16,8 +16,7 @@ from archgen.model.component_nesting import list_described_outputs, list_relied_
 from archgen.model.promise import FIGURE_KEYS, Promise
 from archgen.model.quantity import Quantity
 from archgen.timing.analysis import Analysis
-from archgen.timing.chains.chain_verdicts import LimitState, find_worst_state
-from archgen.timing.chains.read_ages import find_read_ages
+from archgen.timing.chains.chain_verdicts import LimitState, find_read_ages, find_worst_state
 from archgen.timing.figures.figure_wording import format_compared, format_duration, format_rate
 from archgen.timing.figures.timing_values import TimingValue
 

@@ -293,7 +293,9 @@ def _follow_takers(changes: Iterable[BoundaryChange]) -> Iterator[BoundaryChange
     lost, gained = (
         {
             key: changes_of_key[0]
-            for key, changes_of_key in _group_by_giver(change_list, kind).items()
+            for key, changes_of_key in group_pairs(
+                ((change.interface_id, change.givers), change) for change in change_list if change.kind == kind
+            ).items()
             if len(changes_of_key) == 1
         }
         for kind in ("removed", "added")
@@ -306,9 +308,3 @@ def _follow_takers(changes: Iterable[BoundaryChange]) -> Iterator[BoundaryChange
             concerned = change.concerned_partners | lost[key].concerned_partners
             takers = lost[key].takers
             yield replace(change, kind="changed", old_takers=takers, figures=(), concerned_partners=concerned)
-
-
-def _group_by_giver(
-    changes: Iterable[BoundaryChange], kind: str
-) -> Mapping[tuple[str, tuple[str, ...]], list[BoundaryChange]]:
-    return group_pairs(((change.interface_id, change.givers), change) for change in changes if change.kind == kind)

@@ -15,8 +15,7 @@ from archgen.compare.losses.changed_definitions import (
     find_redefined_messages,
     find_retyped_outputs,
 )
-from archgen.compare.losses.changed_meanings import find_changed_frames, find_changed_meanings
-from archgen.compare.losses.changed_parameters import find_changed_parameters
+from archgen.compare.losses.changed_meanings import find_changed_frames, find_changed_meanings, find_changed_parameters
 from archgen.compare.losses.fallen_figures import find_fallen_limits, find_overloaded_cores, find_saturated_links
 from archgen.compare.losses.foreign_edits import find_foreign_edits
 from archgen.compare.losses.lost_connections import (

@@ -302,7 +302,6 @@ def _find_unnamed_outputs(architecture: Architecture) -> frozenset[str]:
 
 
 def _components_by_requirement(elements: Mapping[ElementKey, ComparedElement]) -> Mapping[str, frozenset[str]]:
-    """Return for each requirement the components that name it."""
     components: dict[str, set[str]] = defaultdict(set)
     for (kind, component_id), element in elements.items():
         requirements = element.values.get("requirements") if kind == "component" else None

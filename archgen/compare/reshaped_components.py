@@ -157,7 +157,6 @@ def find_copies(added_ids: Sequence[str], versions: VersionPair, relations: Elem
 def _group_by_ports(
     component_ids: Sequence[str], relations: ElementRelations
 ) -> Mapping[frozenset[str], Mapping[str, FeatureMap]]:
-    """Return the features of components that have ports, by these."""
     groups: dict[frozenset[str], dict[str, FeatureMap]] = defaultdict(dict)
     for component_id in component_ids:
         features = _copied_features(relations, component_id)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from archgen.syntax.yaml_tree import MappingEntry, MappingNode, ScalarNode, list_entries
 
-_TYPE_KEYS = ("is", "same_as")
+_REFERENCE_KEYS = ("is", "same_as")
 
 
 class LibraryWord(str):
@@ -47,7 +47,7 @@ def _qualify_type(entry: MappingEntry, library: str) -> MappingEntry:
 
     return entry.change_keys(
         {
-            **dict.fromkeys(_TYPE_KEYS, qualify),
+            **dict.fromkeys(_REFERENCE_KEYS, qualify),
             "status": mark,
             "node": lambda node: node.change_keys({"status": mark}),
             "deprecated": lambda deprecated: deprecated.change_keys({"use": qualify}),

@@ -14,10 +14,9 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from typing import TYPE_CHECKING
 
-from archgen.compose.expanded_project import ComponentShell, ExpandedProject, Expansion, InstanceOrigin
+from archgen.compose.expanded_project import ComponentShell, ExpandedProject, Expansion, InstanceOrigin, TypeExpression
 from archgen.compose.instance_overlay import InstanceOverlay
 from archgen.compose.library_types import library_of_type, list_type_entries
-from archgen.compose.type_expressions import TypeExpression
 from archgen.diagnostics import Diagnostic, Label
 from archgen.model.derived_names import derive_node_ids
 from archgen.syntax.yaml_tree import MappingEntry, MappingNode, ScalarNode, change_at, find_value, list_entries

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping
 
+from archgen.compose.expanded_project import MAX_TYPE_LENGTH, TypeExpression, bind_type_name, parse_type_expression
 from archgen.compose.instance_overlay import InstanceOverlay
 from archgen.compose.library_types import library_of_type
-from archgen.compose.type_expressions import MAX_TYPE_LENGTH, TypeExpression, bind_type_name, parse_type_expression
 from archgen.diagnostics import Diagnostic, Label, Span, did_you_mean, join_words
 from archgen.frozen import dataclass, field
 from archgen.syntax.yaml_tree import (

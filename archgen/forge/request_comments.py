@@ -13,7 +13,7 @@ from archgen.emit.markdown.limited_comment import MAX_COMMENT_SIZE, LimitedComme
 from archgen.forge.forge_api import ForgeError, run_within
 from archgen.forge.pull_request import CommentOutcome, OpenRequest, find_request, put_comment
 from archgen.frozen import NamedTuple
-from archgen.merge.branch_merge import BranchMerge
+from archgen.merge.branch_results import BranchMerge
 from archgen.merge.merge_sentences import describe_conflict
 
 _VERSION = 1

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
+from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
@@ -11,8 +12,8 @@ from archgen.cache.file_store import FileStore, digest_text
 from archgen.cache.program_stamp import stamp_program
 from archgen.frozen import replace
 from archgen.history import workers
-from archgen.history.history_points import point_from_data, point_to_data
-from archgen.history.project_commits import HistoryInterval, ProjectCommit, list_commits
+from archgen.history.history_points import point_from_data
+from archgen.history.project_commits import HistoryInterval, list_commits
 from archgen.model.project_history import History, HistoryPoint
 from archgen.project import find_tracked_project
 
@@ -46,15 +47,12 @@ class PointCache:
         self._files.store(self._key, json.dumps(points).encode())
 
 
-CountProgress = Callable[[int, int], None]
-
-
 def count_history(
     path: Path | None,
     interval: HistoryInterval = "revision",
     *,
     cache: Path | None = None,
-    progress: CountProgress | None = None,
+    progress: workers.WorkerProgress | None = None,
     least_points: int = 1,
 ) -> History:
     """Return size, progress and findings of a project over time, oldest first: at each commit of HEAD's line of first
@@ -79,13 +77,9 @@ def count_history(
         counted = workers.count_commits(path, tuple(missing.values()), progress)
         points_by_tree |= {commit.tree_id: point for commit, point in zip(missing.values(), counted, strict=True)}
         # Cached points of trees that are not on this line are kept: they may belong to other branches.
-        point_cache.store_points({tree: point_to_data(point) for tree, point in points_by_tree.items()})
-    points = tuple(_at_commit(commit, points_by_tree[commit.tree_id]) for commit in commit_line)
+        point_cache.store_points({tree: asdict(point) for tree, point in points_by_tree.items()})
+    points = tuple(replace(points_by_tree[commit.tree_id], commit=commit.id, day=commit.day) for commit in commit_line)
     return History(points, interval, whole=not tracked_project.objects.repository.is_shallow)
-
-
-def _at_commit(commit: ProjectCommit, point: HistoryPoint) -> HistoryPoint:
-    return replace(point, commit=commit.id, day=commit.day)
 
 
 def _read_cached_point(data: dict[str, object]) -> HistoryPoint | None:

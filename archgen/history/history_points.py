@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
-from dataclasses import asdict
 from typing import Any
 
 from archgen.analyses.size_counts import count_mapped_connections, measure_progress
@@ -43,13 +42,8 @@ def count_point(checked_project: CheckedProject, commit: str, day: str) -> Histo
     )
 
 
-def point_to_data(history_point: HistoryPoint) -> dict[str, Any]:
-    """Return a point as plain data."""
-    return asdict(history_point)
-
-
 def point_from_data(data: Mapping[str, Any]) -> HistoryPoint:
-    """Return a point from plain data. Raise KeyError or TypeError for anything else."""
+    """Return a point from the plain data that `asdict` makes of it. Raise KeyError or TypeError for anything else."""
     rows = tuple(ProgressRow(**{**row, "findings": FindingCounts(**row["findings"])}) for row in data["rows"])
     return HistoryPoint(**{**data, "rows": rows})
 

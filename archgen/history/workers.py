@@ -18,12 +18,13 @@ import sys
 import threading
 from collections.abc import Callable, Hashable, Iterator, Sequence
 from contextlib import suppress
+from dataclasses import asdict
 from pathlib import Path
 
 from archgen import pipeline, project
 from archgen.cache.file_store import digest_text
 from archgen.frozen import replace
-from archgen.history.history_points import count_point, point_from_data, point_to_data
+from archgen.history.history_points import count_point, point_from_data
 from archgen.history.project_commits import ProjectCommit
 from archgen.model.project_history import HistoryPoint
 from archgen.pipeline import VersionCache
@@ -144,7 +145,7 @@ def main() -> None:
     request = json.loads(sys.stdin.buffer.read())
     path = None if request["path"] is None else Path(request["path"])
     for counted_point in _yield_points(path, [ProjectCommit(*fields) for fields in request["commits"]]):
-        sys.stdout.write(json.dumps(point_to_data(counted_point)) + "\n")
+        sys.stdout.write(json.dumps(asdict(counted_point)) + "\n")
         sys.stdout.flush()
 
 

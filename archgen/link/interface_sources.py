@@ -193,7 +193,7 @@ def _find_unknown_field(mention: TypeMention, interfaces: Interfaces) -> Iterato
     if answer == "known":
         return
     guess = interfaces.find_nearest(message)
-    help_line = f"did you mean `{_short_message_name(guess)}`?" if guess and "/msg/" in guess else None
+    help_line = f"did you mean `{guess.replace('/msg/', '/')}`?" if guess and "/msg/" in guess else None
     if answer == "wrong":
         rule = UNKNOWN_FIELD_TYPE if element else INVALID_INTERFACE
         yield Diagnostic(rule, f"there is no message `{message}`", span, help=help_line, element=element)
@@ -223,11 +223,6 @@ def _find_self_containing(
                 yield Diagnostic(
                     INVALID_INTERFACE, f"`{name}` holds itself{detour}", span, help="name it by an id or an index"
                 )
-
-
-def _short_message_name(message: str) -> str:
-    """Return a full name as definitions write it, without `msg`."""
-    return message.replace("/msg/", "/")
 
 
 def _merge_interfaces(shipped: Interfaces, own_interfaces: Mapping[str, Interface]) -> Interfaces:

@@ -9,8 +9,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 
 from archgen.frozen import NamedTuple
-from archgen.link.reference_listening import HeardReference
-from archgen.link.reference_resolution import Answer, NameList
+from archgen.link.reference_resolution import Answer, HeardReference, NameList
 from archgen.model.component import Component, Output
 from archgen.model.known_parts import KnownParts
 from archgen.model.node import Node

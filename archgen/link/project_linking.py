@@ -10,7 +10,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 
 from archgen.compose import ExpandedProject, expand_project, list_type_entries
-from archgen.compose.type_expressions import TypeExpression
+from archgen.compose.expanded_project import TypeExpression
 from archgen.derivation.wire.wire_names import apply_launch_names
 from archgen.diagnostics import NO_SPAN, Diagnostic, Span
 from archgen.link import mapping_values
@@ -21,15 +21,13 @@ from archgen.link.declare.element_declaration import declare_elements, declare_s
 from archgen.link.declare.frame_declaration import declare_frames
 from archgen.link.declare.handed_parameters import HandedParameters
 from archgen.link.declare.node_declaration import NodeContext, declare_nodes, resolve_implements
-from archgen.link.declare.section_declaration import declare_variants
+from archgen.link.declare.section_declaration import declare_use_cases, declare_variants
+from archgen.link.declare.timing_declaration import TimingMerger, find_shared_components
 from archgen.link.declare.type_declaration import DeclaredTypes
-from archgen.link.declare.use_case_declaration import declare_use_cases
 from archgen.link.element_outline import ElementOutline, build_outline, diagnose_undeclared_inputs
 from archgen.link.link_memory import LinkMemory
-from archgen.link.merged_timing import TimingMerger, find_shared_components
 from archgen.link.parameter_texts import flatten_parameters
-from archgen.link.reference_listening import HeardReferences
-from archgen.link.reference_resolution import SECTIONS_OF_PLAIN_NAMES, ReferenceResolver
+from archgen.link.reference_resolution import SECTIONS_OF_PLAIN_NAMES, HeardReferences, ReferenceResolver
 from archgen.model.architecture import Architecture
 from archgen.model.component import PATTERN_GROUP, TypePatterns
 from archgen.model.deployment import Container

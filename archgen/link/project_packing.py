@@ -14,8 +14,7 @@ from archgen.diagnostics import Diagnostic, Span
 from archgen.frozen import dataclass, field
 from archgen.language.key_paths import OWN_DATA, SLICE, find_inner_part
 from archgen.language.language_tables import BARE_PARTS, DATA_PARTS
-from archgen.link.library_merging import keep_used_libraries
-from archgen.link.slice_merging import list_supported_elements
+from archgen.link.slice_merging import keep_used_libraries, list_supported_elements
 from archgen.model.architecture import Architecture
 from archgen.model.message_types import ConceptualType
 from archgen.syntax.yaml_tree import IgnoreComment, MappingNode, ScalarNode, SequenceNode, YamlNode

@@ -1,6 +1,10 @@
 """Resolve references: which element a dotted path means, and what to report if it means none, or several.
 
 Say that a reference names nothing, and what it may have meant.
+
+Names of components are looked up in what is composed around their writer first.
+
+Somebody may listen: where a reference is written, and which element it means.
 """
 
 from __future__ import annotations
@@ -14,9 +18,25 @@ from archgen.frozen import NamedTuple, dataclass, field, replace
 from archgen.language.language_tables import PLAIN_SECTIONS
 from archgen.link import mapping_values
 from archgen.link.path_guesses import PathGuesser, list_possible_kinds
-from archgen.link.reference_listening import HeardReference, HeardReferences
 from archgen.model.path_resolver import NO_MATCH, ElementRef, PathIndex, PathMatch, PathResolver
 from archgen.syntax.yaml_tree import MappingNode, ScalarNode
+
+
+class HeardReference(NamedTuple):
+    """A reference that was resolved: `text` as it is written at `span`, `kind` and complete `id` of what it means.
+
+    `writer` is the element that writes it. A reference inside of a component type is heard once for each instance.
+    """
+
+    span: Span
+    kind: str
+    id: str
+    text: str
+    writer: str
+
+
+HeardReferences = list[HeardReference]
+
 
 _MAX_LISTED = 6
 """So many names are listed where no name resembles an unknown one."""
@@ -381,3 +401,17 @@ def list_endings(element_id: str) -> Iterator[str]:
     while dot:
         yield ending
         _, dot, ending = ending.partition(".")
+
+
+def find_inner_component(text: str, resolver: ReferenceResolver, writer_id: str) -> str | None:
+    """Return the component that a text names inside of its writer or of what is around it, the innermost one; not the writer.
+
+    So a name in a component type means one of its own components in each instance.
+    """
+    around = writer_id
+    # What has no dot is a group: in it names are looked up as everywhere.
+    while "." in around:
+        if f"{around}.{text}" != writer_id and f"{around}.{text}" in resolver.spans["component"]:
+            return f"{around}.{text}"
+        around = around.rpartition(".")[0]
+    return None

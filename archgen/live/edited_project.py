@@ -16,7 +16,7 @@ from archgen.checking.reference_index import ReferenceIndex, index_references
 from archgen.diagnostics import Diagnostic, SourceTexts, Span
 from archgen.findings.variant_findings import MISSING_RULES, UNUSED_RULES
 from archgen.frozen import NamedTuple, replace
-from archgen.link.reference_listening import HeardReferences
+from archgen.link.reference_resolution import HeardReferences
 from archgen.live.warm_project import WarmProject
 from archgen.model.variant import BASE_NAME
 from archgen.pipeline import CheckedProject

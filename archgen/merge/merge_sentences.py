@@ -6,7 +6,7 @@ from collections.abc import Iterable
 
 from archgen.diagnostics import format_json
 from archgen.emit.data.findings_data import finding_to_json
-from archgen.merge.branch_merge import BranchMerge, FileConflict
+from archgen.merge.branch_results import BranchMerge, FileConflict
 
 
 def describe_merge(branch_merge: BranchMerge, main_line: str) -> str:

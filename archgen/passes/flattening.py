@@ -8,7 +8,7 @@ from archgen import derivation
 from archgen.diagnostics import Span
 from archgen.link import mapping_values
 from archgen.link.declare.handed_parameters import HandedParameters
-from archgen.link.open_shells import OpenShells
+from archgen.link.port_sources import OpenShells
 from archgen.model.derived_names import derive_node_ids
 from archgen.model.element_ids import MAX_ID_LENGTH, make_id, make_unique_id
 from archgen.model.parameter import Parameter

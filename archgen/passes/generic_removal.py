@@ -6,7 +6,7 @@ import re
 from collections.abc import Iterator, Mapping
 from itertools import chain, count
 
-from archgen.compose.type_expressions import TypeExpression, parse_type_expression
+from archgen.compose.expanded_project import TypeExpression, parse_type_expression
 from archgen.compose.type_table import OPERATION_PARTS, bind_type_body, list_generic_names
 from archgen.diagnostics.element_origins import TreePath
 from archgen.link import mapping_values

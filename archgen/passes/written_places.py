@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from archgen.compose.type_expressions import parse_type_expression
+from archgen.compose.expanded_project import parse_type_expression
 from archgen.compose.type_table import list_generic_names
 from archgen.diagnostics.element_origins import TreePath
 from archgen.frozen import NamedTuple

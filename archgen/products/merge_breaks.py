@@ -15,7 +15,7 @@ from archgen.edit.refactoring.followed_branches import follow_branches
 from archgen.findings.rule_table import BREAKING_CHANGE
 from archgen.frozen import replace
 from archgen.link.interface_sources import interface_name_of
-from archgen.merge.branch_merge import BranchJudges, JointBreaks
+from archgen.merge.branch_results import BranchJudges, JointBreaks
 from archgen.pipeline import CheckedProject
 from archgen.products.compared_versions import ProjectVersion, compare_named_versions
 from archgen.views.changes.breaking_verdict import describe_remedy, join_categories

@@ -13,7 +13,7 @@ from archgen.pipeline import CheckedProject
 from archgen.products.agreement_documents import make_timed_lookup
 from archgen.products.compared_versions import WORKING_TREE_NAME, ProjectVersion, compare_named_versions
 from archgen.products.outline_markdown import render_outline_markdown
-from archgen.timing.chains.word_resolution import unknown_name_text
+from archgen.timing.chains.element_index import unknown_name_text
 from archgen.views.agreement.exchange_tables import gather_exchanges
 from archgen.views.elements import element_names
 from archgen.views.lookup import Lookup

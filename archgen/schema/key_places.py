@@ -2,16 +2,13 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from archgen.diagnostics import find_closest, join_words
 from archgen.language.language_tables import OTHER_WORDS, SECTION_KINDS
 from archgen.schema.language_schema import TELLING_NOTHING, list_keys, load_schema, resolve_part
 from archgen.schema.schema_wording import add_article
-from archgen.syntax.yaml_tree import MappingNode, ScalarNode
-
-if TYPE_CHECKING:
-    from archgen.syntax.yaml_tree import MappingEntry, YamlNode
+from archgen.syntax.yaml_tree import MappingEntry, MappingNode, ScalarNode, YamlNode
 
 KeyPath = tuple[str | int, ...]
 

@@ -5,9 +5,8 @@ from __future__ import annotations
 from heapq import heappush
 
 from archgen.simulation.job_activation import deliver_sample, store_sample
-from archgen.simulation.resource_use import enter_resource
 from archgen.simulation.simulation_run import LOAD_ONLY, SAMPLE_ARRIVAL, SimulationRun
-from archgen.simulation.thread_scheduling import let_others_compute, queue_thread
+from archgen.simulation.thread_scheduling import enter_resource, let_others_compute, queue_thread
 
 
 def end_thread(run: SimulationRun, now: int, thread: int, version: int) -> None:

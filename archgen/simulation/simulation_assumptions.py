@@ -12,7 +12,7 @@ from archgen.frozen import dataclass
 from archgen.simulation.simulation_result import SimulationResult
 from archgen.timing.analysis import Analysis
 from archgen.timing.figures.figure_wording import format_duration
-from archgen.timing.system.fair_hosts import PREEMPTIVE_ORDERS
+from archgen.timing.system.core_placement import PREEMPTIVE_ORDERS
 from archgen.timing.system.timing_system import Activity, TimingSystem, is_selective_arc
 
 NOT_SIMULATED = (

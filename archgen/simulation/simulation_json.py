@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from fractions import Fraction
 
 from archgen.simulation import simulation_assumptions
-from archgen.simulation.analysis_bounds import bound_data_ages, bound_utilisation, upper_bound
+from archgen.simulation.chain_witnesses import bound_data_ages, bound_utilisation, upper_bound
 from archgen.simulation.simulation_result import (
     ChainFigures,
     DurationDistribution,
@@ -65,19 +65,15 @@ def simulation_to_json(
             for (element, port, topic), count in result.drops.items()
         ],
         "unknown": list(result.unknown_figures),
-        "assumptions": _assumptions_to_json(result, analysis),
-    }
-
-
-def _assumptions_to_json(result: SimulationResult, analysis: Analysis) -> SimulationJson:
-    return {
-        "random": list(simulation_assumptions.list_random_choices(analysis.system)),
-        "defaults": [
-            {"figure": default.figure, "taken": default.assumed_value, "of": list(default.element_ids)}
-            for default in simulation_assumptions.list_default_figures(analysis.system)
-        ],
-        "contradictions": list(simulation_assumptions.find_simulated_contradictions(result, analysis)),
-        "not_simulated": list(simulation_assumptions.NOT_SIMULATED),
+        "assumptions": {
+            "random": list(simulation_assumptions.list_random_choices(analysis.system)),
+            "defaults": [
+                {"figure": default.figure, "taken": default.assumed_value, "of": list(default.element_ids)}
+                for default in simulation_assumptions.list_default_figures(analysis.system)
+            ],
+            "contradictions": list(simulation_assumptions.find_simulated_contradictions(result, analysis)),
+            "not_simulated": list(simulation_assumptions.NOT_SIMULATED),
+        },
     }
 
 
@@ -167,5 +163,4 @@ def _optional_float(value: Fraction | None) -> float | None:
 
 def _ns_to_ms(value: Fraction | None) -> float | None:
     # Rounded to a picosecond, so that the noise of binary fractions does not show.
-    """Convert ns to ms."""
     return None if value is None else round(float(value / _MS), 9)

@@ -7,7 +7,7 @@ from fractions import Fraction
 from textwrap import wrap
 
 from archgen.simulation import simulation_assumptions
-from archgen.simulation.analysis_bounds import bound_data_ages, bound_utilisation, upper_bound
+from archgen.simulation.chain_witnesses import bound_data_ages, bound_utilisation, upper_bound
 from archgen.simulation.simulation_result import ObservedChain, SimulationResult, list_seen_shares
 from archgen.timing.analysis import Analysis, ChainResult
 from archgen.timing.chains.chain_verdicts import SeenVerdict

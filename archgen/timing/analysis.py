@@ -12,8 +12,7 @@ from archgen.model.declared_timing import ActivityBehaviour, SchedulingOrder
 from archgen.model.node import Endpoint
 from archgen.model.quantity import write_share
 from archgen.timing.figures.figure_wording import describe_timing_value, format_duration
-from archgen.timing.figures.timing_values import UNKNOWN_VALUE, ResponseTier, TimingValue
-from archgen.timing.figures.value_arithmetic import is_known_bound
+from archgen.timing.figures.timing_values import UNKNOWN_VALUE, ResponseTier, TimingValue, is_known_bound
 from archgen.timing.system import activity_builder
 from archgen.timing.system.timing_system import Arc, TimingSystem
 

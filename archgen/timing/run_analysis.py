@@ -2,27 +2,26 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from operator import attrgetter
 
 from archgen.frozen import replace
 from archgen.model.architecture import Architecture
-from archgen.timing.analysis import Analysis, Reason, ResourceLoad, ResponseTime
+from archgen.timing.analysis import Analysis, Reason
 from archgen.timing.load.host_loads import (
     build_response_times,
     build_run_responses,
     build_storing_waits,
+    explain_waits,
     find_host_loads,
+    find_resource_loads,
 )
 from archgen.timing.load.link_queueing import settle_links
-from archgen.timing.load.resource_loads import explain_waits, find_resource_loads
 from archgen.timing.rates.edge_fit import EdgeContext, find_edge_fits
 from archgen.timing.rates.link_traffic import find_link_loads, find_topic_loads
 from archgen.timing.rates.output_rates import find_rates
 from archgen.timing.rates.service_waiting import find_service_loads
-from archgen.timing.system.built_parts import BuiltParts
-from archgen.timing.system.core_placement import find_resources
-from archgen.timing.system.resource_division import split_resources
+from archgen.timing.system.activity_builder import BuiltParts
+from archgen.timing.system.core_placement import find_resources, split_resources
 from archgen.timing.system.system_builder import build_system as build
 from archgen.timing.system.timing_system import TimingSystem
 
@@ -113,7 +112,15 @@ def analyse_system(system: TimingSystem, notes: tuple[Reason, ...] = (), *, judg
     responses = build_response_times(state, split_resources(system, resource_list))
     rates = find_rates(state, responses)
     resource_loads = find_resource_loads(state, rates.paces)
-    responses = _add_wait_reasons(system, responses, resource_loads)
+    responses = {
+        name: replace(
+            response,
+            reasons=(*response.reasons, *explain_waits(resource_loads, system.activities[name], system.tick)),
+        )
+        if system.activities[name].suspends
+        else response
+        for name, response in responses.items()
+    }
     edge_context = EdgeContext(state, rates.paces, rates.outputs, responses)
     return Analysis(
         system=system,
@@ -146,18 +153,3 @@ def analyse_system(system: TimingSystem, notes: tuple[Reason, ...] = (), *, judg
         state=state,
         searched_terms=state.searched_terms,
     )
-
-
-def _add_wait_reasons(
-    system: TimingSystem, responses: Mapping[str, ResponseTime], resource_loads: Mapping[str, ResourceLoad]
-) -> dict[str, ResponseTime]:
-    """Return responses with the waits for resources among their reasons."""
-    return {
-        name: replace(
-            response,
-            reasons=(*response.reasons, *explain_waits(resource_loads, system.activities[name], system.tick)),
-        )
-        if system.activities[name].suspends
-        else response
-        for name, response in responses.items()
-    }

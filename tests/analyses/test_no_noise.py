@@ -7,7 +7,8 @@ from pathlib import Path
 import pytest
 
 from archgen.diagnostics.diagnostic import Severity
-from archgen.pipeline import check_project, check_text
+from archgen.pipeline import check_project
+from tests.judged_projects import check_text
 
 
 def _rules(text: str) -> list[str]:

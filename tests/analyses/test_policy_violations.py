@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from archgen.pipeline import check_text
+from tests.judged_projects import check_text
 
 _ROBOT = """\
 groups:

@@ -15,7 +15,7 @@ from archgen.diagnostics.source_span import Span
 from archgen.model.architecture import Architecture, ProjectInfo
 from archgen.model.node import Endpoint, Node, Qos, Topic
 from archgen.model.quantity import Quantity, parse_quantity
-from archgen.pipeline import check_text
+from tests.judged_projects import check_text
 
 _VALUES: dict[str, tuple[str | None, ...]] = {
     "reliability": ("best_effort", "reliable"),

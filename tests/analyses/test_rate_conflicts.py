@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from archgen.pipeline import check_text
+from tests.judged_projects import check_text
 
 _RULES = {
     "period-conflict",

@@ -10,8 +10,9 @@ import pytest
 from archgen.diagnostics.rule_options import RuleOption, format_percentage
 from archgen.findings.rule_pages import format_rule_page, read_rule_page, rule_page_to_markdown
 from archgen.findings.rule_table import index_rules
-from archgen.pipeline import SHIPPED_RULES, check_text
+from archgen.pipeline import SHIPPED_RULES
 from archgen.schema.language_schema import load_schema
+from tests.judged_projects import check_text
 
 RULES = index_rules(SHIPPED_RULES)
 OPTIONS = [(rule.name, option) for rule in RULES.values() for option in rule.options]

@@ -17,11 +17,11 @@ from archgen.checking import code_ownership
 from archgen.emit.codeowners_file import REVIEWER_HANDLE, file_pattern
 from archgen.model.architecture import Architecture
 from archgen.model.selector_evaluation import evaluate_selector
-from archgen.pipeline import check_project, check_text
+from archgen.pipeline import check_project
 from archgen.views.elements import element_card
 from archgen.views.tables import element_rows
 from tests.agreeing import DUO, checked, view
-from tests.judged_projects import judge_ramcip
+from tests.judged_projects import check_text, judge_ramcip
 from tests.repositories import repository
 
 OWNED = """\

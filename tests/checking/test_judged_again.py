@@ -17,7 +17,7 @@ from archgen.checking.derived_projects import (
     stand_in_variants,
     transform_project,
 )
-from archgen.checking.merged_project import merge_project
+from archgen.checking.linked_project import merge_project
 from archgen.timing.run_analysis import AnalysisMemory
 
 ROBOT = """\

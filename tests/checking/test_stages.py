@@ -8,8 +8,13 @@ from archgen import project
 from archgen.checking.all_rules import SHIPPED_RULES, list_structural_errors
 from archgen.checking.checked_packing import pack_checked_project
 from archgen.checking.checked_project import CheckedProject
-from archgen.checking.linked_project import link_merged_project, load_project_interfaces, read_interface_files
-from archgen.checking.merged_project import MergedProject, merge_project
+from archgen.checking.linked_project import (
+    MergedProject,
+    link_merged_project,
+    load_project_interfaces,
+    merge_project,
+    read_interface_files,
+)
 from archgen.checking.project_judging import judge_merged_project, read_named_contents
 from archgen.diagnostics.diagnostic import Diagnostic
 from archgen.link.declare.type_declaration import DeclaredTypes

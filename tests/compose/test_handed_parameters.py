@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from archgen import pipeline
 from tests.compose.test_project_expansion import read_architecture
+from tests.judged_projects import check_text
 
 TEXT = """
 component_types:
@@ -56,7 +56,7 @@ def test_each_instance_has_frames_of_its_own(tmp_path: Path) -> None:
 
 def test_what_the_component_around_lacks_is_told_once() -> None:
     text = TEXT.replace("from: self.speed", "from: self.sped").replace("$(self.side)_motor", "$(self.sid)_motor")
-    wrong = [finding for finding in pipeline.check_text(text) if finding.rule == "unknown-reference"]
+    wrong = [finding for finding in check_text(text) if finding.rule == "unknown-reference"]
     assert [(finding.span.line, finding.message, finding.help) for finding in wrong] == [
         (10, "`g.left.hand` has no parameter `sid` to hand in", "did you mean `side`?"),
         (12, "`g.left` has no parameter `sped` to hand in", "did you mean `speed`?"),
@@ -65,7 +65,7 @@ def test_what_the_component_around_lacks_is_told_once() -> None:
 
 def test_there_must_be_a_component_around() -> None:
     text = "groups: {g: {components: {a: {functionality: F., parameters: {side: {from: self.side}}}}}}"
-    wrong = [finding.message for finding in pipeline.check_text(text) if finding.rule == "unknown-reference"]
+    wrong = [finding.message for finding in check_text(text) if finding.rule == "unknown-reference"]
     assert wrong == ["`self.side` names a parameter of the component around `g.a`, but there is none"]
 
 
@@ -92,5 +92,5 @@ def test_the_node_and_the_ports_of_an_instance_are_named_by_its_parameters(tmp_p
 
 def test_a_wrong_value_that_is_handed_in_is_told_where_it_is_written() -> None:
     text = TEXT.replace("value: 0.5, unit: m/s}", "value: 0.5, range: [0, 1]}").replace("speed: 0.2", "speed: 2")
-    wrong = [finding for finding in pipeline.check_text(text) if finding.rule == "wrong-parameter"]
+    wrong = [finding for finding in check_text(text) if finding.rule == "wrong-parameter"]
     assert [(finding.span.line, finding.element) for finding in wrong] == [(18, "g.right")]

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from archgen.compose.type_expressions import bind_type_name, parse_type_expression
+from archgen.compose.expanded_project import bind_type_name, parse_type_expression
 
 
 @pytest.mark.parametrize(

@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from archgen.diagnostics.odd_characters import find_misplaced_character, find_odd_character, name_character
-from archgen.pipeline import check_text
+from tests.judged_projects import check_text
 
 _ROBOT = """\
 groups:

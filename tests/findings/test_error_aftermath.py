@@ -9,7 +9,8 @@ import pytest
 from archgen.diagnostics.diagnostic import Diagnostic
 from archgen.diagnostics.source_span import NO_SPAN
 from archgen.findings.error_aftermath import AFTERMATH_RULES, drop_aftermath, list_waiting_rules
-from archgen.pipeline import SHIPPED_RULES, check_project, check_text
+from archgen.pipeline import SHIPPED_RULES, check_project
+from tests.judged_projects import check_text
 
 
 def _findings(folder: Path, files: dict[str, str]) -> list[str]:

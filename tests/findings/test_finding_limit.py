@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from archgen import pipeline
 from archgen.analyses import MAX_LOOKED_FOR
 from archgen.diagnostics.diagnostic import Diagnostic, Severity
 from archgen.diagnostics.source_span import Span
 from archgen.findings.instance_findings import MAX_FINDINGS_PER_RULE, limit_findings
+from tests.judged_projects import check_text
 
 
 def _findings(rule: str, count: int) -> list[Diagnostic]:
@@ -40,9 +40,7 @@ def _write_forbidden_project(policy_count: int, ignore: str = "") -> str:
 def test_more_findings_than_anybody_can_read_are_not_looked_for() -> None:
     for policy_count, rest in ((100, "14,000 more"), (133, "18,950 more"), (140, "at least 19,001 more")):
         findings = [
-            each
-            for each in pipeline.check_text(_write_forbidden_project(policy_count))
-            if each.rule == "forbidden-flow"
+            each for each in check_text(_write_forbidden_project(policy_count)) if each.rule == "forbidden-flow"
         ]
         assert len(findings) == MAX_FINDINGS_PER_RULE + 1
         assert findings[-1].message == f"{rest} findings of this rule, from here on, are left out"
@@ -50,7 +48,7 @@ def test_more_findings_than_anybody_can_read_are_not_looked_for() -> None:
 
 def test_what_is_not_looked_for_is_not_silenced_by_silencing_the_others() -> None:
     text = _write_forbidden_project(140, "  # archgen: ignore[forbidden-flow] all is well")
-    findings = [each for each in pipeline.check_text(text) if each.rule == "forbidden-flow"]
+    findings = [each for each in check_text(text) if each.rule == "forbidden-flow"]
     assert [each.message for each in findings] == [
         f"this rule has more than {MAX_LOOKED_FOR:,} findings: from here on none is looked for"
     ]

@@ -13,6 +13,7 @@ from archgen.findings.plugged_rules import load_plugged_rules
 from archgen.installed_plugins import PluginRefusedError, switch_off_others
 from archgen.resources import SWITCH_VARIABLE
 from tests.installed_packages import installed_in, write_package
+from tests.judged_projects import check_text
 
 CODE = '''
 from archgen.plugin.findings import Diagnostic, RuleOption, Severity
@@ -41,7 +42,7 @@ def judge(comment: str = "", settings: str = "") -> list[str]:
     text = PROJECT.format(comment=comment) + settings
     return [
         f"{finding.severity} {finding.rule}: {finding.message}"
-        for finding in pipeline.check_text(text)
+        for finding in check_text(text)
         if finding.rule in {"short-name", "failed-rule", "unknown-rule", "unused-ignore", "unknown-key"}
     ]
 
@@ -120,9 +121,7 @@ ENDLESS = {"api": 1, "rules": [(endless, Severity.NOTE)]}
     install(tmp_path, "ENDLESS", code)
     monkeypatch.setattr(analyses, "MAX_LOOKED_FOR", 5)
     with installed_in(tmp_path):
-        messages = {
-            finding.message for finding in pipeline.check_text(PROJECT.format(comment="")) if finding.rule == "endless"
-        }
+        messages = {finding.message for finding in check_text(PROJECT.format(comment="")) if finding.rule == "endless"}
         assert messages == {"more", analyses.NO_LONGER_LOOKED_FOR}
 
 

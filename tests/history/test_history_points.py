@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 import json
+from dataclasses import asdict
 from pathlib import Path
 
 import pytest
 
-from archgen.history.history_points import count_point, point_from_data, point_to_data
+from archgen.history.history_points import count_point, point_from_data
 from archgen.model.project_history import FindingCounts, HistoryPoint
 from archgen.pipeline import check_project
 
@@ -53,8 +54,8 @@ def test_an_error_counts_for_the_whole_for_its_group_and_for_the_owner_of_its_el
 
 
 def test_a_point_survives_json(point: HistoryPoint) -> None:
-    assert point_from_data(json.loads(json.dumps(point_to_data(point)))) == point
-    assert isinstance(point_from_data(point_to_data(point)).rows[0].findings, FindingCounts)
+    assert point_from_data(json.loads(json.dumps(asdict(point)))) == point
+    assert isinstance(point_from_data(asdict(point)).rows[0].findings, FindingCounts)
 
 
 @pytest.mark.parametrize("data", [{}, {"rows": [{}]}, {"rows": [], "surplus": 1}])

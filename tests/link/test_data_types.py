@@ -9,7 +9,7 @@ import pytest
 
 from archgen import pipeline
 from archgen.checking.checked_packing import pack_checked_project
-from archgen.link.data_types import field_reading, field_types, message_definitions, used_types
+from archgen.link.data_types import field_types, message_definitions
 from archgen.link.data_types.field_types import FieldTypeReader, TypeSources
 from archgen.link.declare.type_declaration import drop_circular_fields
 from archgen.model.known_interfaces import Interface
@@ -308,7 +308,7 @@ def test_only_generic_types_are_bound() -> None:
     assert bound_type.fields == (DataField("x", "Plain"),)
     assert field_types.make_bound_type("Plain<Box>", types) is None
     assert field_types.make_bound_type("Box<Plain, Plain>", types) is None
-    assert used_types.add_used_types(types, ["Box<Plain>"], {}) == []
+    assert field_types.add_used_types(types, ["Box<Plain>"], {}) == []
     assert list(types) == ["Box", "Plain", "Box<Plain>"]
     assert message_definitions.defines_message(types["Box<Plain>"], types)
     reader = FieldTypeReader(types, TypeSources("r", {}))
@@ -320,6 +320,6 @@ def test_only_generic_types_are_bound() -> None:
 
 
 def test_a_text_of_ros_1_goes_on_to_the_end_of_its_line() -> None:
-    assert field_reading.write_literal("string", "a # b", ros1=True) == "a # b"
-    assert field_reading.explain_bad_text("string", "a # b", ros1=True) is None
-    assert field_reading.explain_bad_text("string", "a # b", ros1=False) is not None
+    assert message_definitions.write_literal("string", "a # b", ros1=True) == "a # b"
+    assert message_definitions.explain_bad_text("string", "a # b", ros1=True) is None
+    assert message_definitions.explain_bad_text("string", "a # b", ros1=False) is not None

@@ -6,7 +6,7 @@ import pytest
 
 from archgen.diagnostics.diagnostic import Severity
 from archgen.link.declare.timing_declaration import ALWAYS
-from archgen.pipeline import check_text
+from tests.judged_projects import check_text
 from tests.timing.random_systems import architecture
 
 HEAD = """groups: {g: {components: {a: {outputs: {o: T}}, b: {inputs: {i: g.a.o}}}}}

@@ -5,8 +5,7 @@ from __future__ import annotations
 import pytest
 
 from archgen.diagnostics.source_span import NO_SPAN, Span
-from archgen.link.inner_names import find_inner_component
-from archgen.link.reference_resolution import ReferenceResolver
+from archgen.link.reference_resolution import ReferenceResolver, find_inner_component
 
 IDS = ("g.arm", "g.arm.motor", "g.arm.hand", "g.arm.hand.motor", "g.arm.hand.tip", "g.motor", "g.base")
 

@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 from archgen.diagnostics.source_span import Span
-from archgen.link.verification_files import find_missing_verifications
+from archgen.link.named_files import find_missing_verifications
 from archgen.model.architecture import Architecture, ProjectInfo
 from archgen.model.requirement import Requirement, Verification
 from archgen.pipeline import check_project

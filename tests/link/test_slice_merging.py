@@ -9,10 +9,11 @@ import pytest
 from archgen.diagnostics.diagnostic import Diagnostic
 from archgen.diagnostics.source_span import NO_SPAN
 from archgen.link.slice_merging import merge_documents
-from archgen.pipeline import check_project, check_text
+from archgen.pipeline import check_project
 from archgen.schema import normalise_document, validate_document
 from archgen.syntax import yaml_parser
 from archgen.syntax.yaml_tree import YamlDocument, node_to_data
+from tests.judged_projects import check_text
 
 
 def slices(*texts: str) -> list[YamlDocument]:

@@ -7,7 +7,7 @@ from collections.abc import Collection
 import pytest
 
 from archgen.checking import project_judging
-from archgen.pipeline import check_text
+from tests.judged_projects import check_text
 
 _ROBOT = """\
 partners: {logtech: LogTech GmbH, lab: Laboratory}

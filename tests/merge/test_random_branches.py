@@ -19,7 +19,7 @@ from archgen.edit.refactoring.element_move import plan_move, plan_split
 from archgen.edit.refactoring.element_rename import plan_rename
 from archgen.edit.refactoring.judged_version import JudgedVersion, judge_edited, judge_version
 from archgen.frozen import NamedTuple
-from archgen.merge.branch_merge import BranchMerge
+from archgen.merge.branch_results import BranchMerge
 from archgen.merge.head_merge import merge_into_head
 from archgen.merge.tree_merge import MappingValue, MergedValue, read_merged_value
 from archgen.pipeline import CheckedProject, check_project

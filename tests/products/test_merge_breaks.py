@@ -9,7 +9,8 @@ import jsonschema_rs
 import pytest
 
 from archgen import resources
-from archgen.merge.branch_merge import BranchMerge, preview_merges
+from archgen.merge.branch_merge import preview_merges
+from archgen.merge.branch_results import BranchMerge
 from archgen.merge.merge_sentences import describe_conflict, describe_merge, format_merges_json
 from archgen.products.merge_breaks import BRANCH_JUDGES
 from tests import repositories

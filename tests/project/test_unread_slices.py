@@ -12,7 +12,7 @@ from archgen.diagnostics.diagnostic import Diagnostic
 from archgen.diagnostics.source_span import NO_SPAN
 from archgen.emit.terminal.findings_text import render_findings_text
 from archgen.pipeline import check_project
-from archgen.project.unread_slices import blame_unread_files
+from archgen.project.source_patterns import blame_unread_files
 
 SLICE = "groups:\n  g:\n    components:\n      weeder: {outputs: {x: T}}\n"
 LINES = SLICE.splitlines(keepends=True)

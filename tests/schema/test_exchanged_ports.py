@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import pytest
 
-from archgen.pipeline import check_text
 from archgen.schema.schema_validation import mend_exchanged_ports
 from archgen.syntax import yaml_parser
+from tests.judged_projects import check_text
 from tests.schema.findings import find_mistakes
 
 _ROBOT = """\

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import pytest
 
-from archgen.pipeline import check_text
 from archgen.schema.misplaced_elements import mend_misplaced_elements
 from archgen.syntax import yaml_parser
 from archgen.syntax.yaml_tree import MappingNode
+from tests.judged_projects import check_text
 
 _ROBOT = """\
 groups:

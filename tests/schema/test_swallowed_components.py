@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import pytest
 
-from archgen.pipeline import check_text
 from archgen.schema.schema_validation import find_swallowed_components
 from archgen.syntax import yaml_parser
+from tests.judged_projects import check_text
 
 _GROUP = """\
 groups:

@@ -3,8 +3,7 @@
 from __future__ import annotations
 
 from archgen.model.architecture import Architecture
-from archgen.simulation.analysis_bounds import find_publish_pauses
-from archgen.simulation.chain_witnesses import find_witnesses
+from archgen.simulation.chain_witnesses import find_publish_pauses, find_witnesses
 from archgen.simulation.schedule_log import LateSchedule, record_schedule
 from archgen.timing.analysis import Analysis, ChainResult, LateRun
 from archgen.timing.chains.chain_bounds import bound_all_chains

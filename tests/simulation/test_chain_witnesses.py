@@ -8,8 +8,7 @@ import pytest
 
 from archgen.model.architecture import Architecture
 from archgen.simulation import chain_witnesses, simulate_system
-from archgen.simulation.analysis_bounds import find_publish_pauses
-from archgen.simulation.chain_witnesses import find_witnesses, judge_chains
+from archgen.simulation.chain_witnesses import find_publish_pauses, find_witnesses, judge_chains
 from archgen.timing.chains.chain_bounds import bound_all_chains
 from archgen.timing.run_analysis import analyse_architecture
 from tests.timing.sketches import read_sketch

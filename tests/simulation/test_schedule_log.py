@@ -8,7 +8,7 @@ from itertools import pairwise
 
 import pytest
 
-from archgen.simulation.analysis_bounds import find_publish_pauses
+from archgen.simulation.chain_witnesses import find_publish_pauses
 from archgen.simulation.schedule_log import LateSchedule, record_schedule
 from tests.property_sizes import list_seeds
 from tests.running import ROOT

@@ -8,7 +8,7 @@ from fractions import Fraction
 
 from archgen.model.architecture import Architecture
 from archgen.simulation import SimulationResult, simulate_system
-from archgen.simulation.analysis_bounds import bound_data_ages, find_publish_pauses
+from archgen.simulation.chain_witnesses import bound_data_ages, find_publish_pauses
 from archgen.timing.analysis import Analysis, ChainResult
 from archgen.timing.chains.chain_bounds import bound_all_chains
 from archgen.timing.figures.timing_values import TimingValue

@@ -14,7 +14,7 @@ from archgen.simulation.time_matching import make_matcher
 from archgen.timing.analysis import Analysis
 from archgen.timing.chains.fused_inputs import find_fused_inputs
 from archgen.timing.chains.step_delays import StepDelays
-from archgen.timing.load.match_delays import MatchedInput, find_match_windows
+from archgen.timing.load.event_models import MatchedInput, find_match_windows
 from archgen.timing.run_analysis import analyse_architecture, analyse_system
 from archgen.timing.system.timing_system import Activity, TimingSystem
 from tests.simulation.systems import arc, call, event, system, timed

@@ -8,8 +8,7 @@ import archgen
 from archgen.emit.data import timing_json
 from archgen.timing.analysis import Analysis
 from archgen.timing.chains.chain_bounds import bound_all_chains
-from archgen.timing.figures.timing_values import TimingValue
-from archgen.timing.figures.value_arithmetic import UNBOUNDED_VALUE, add_values, smallest_value
+from archgen.timing.figures.timing_values import UNBOUNDED_VALUE, TimingValue, add_values, smallest_value
 from tests.timing.made import missing, ms
 
 _LOOP = """

@@ -11,7 +11,7 @@ import pytest
 
 from archgen.model.architecture import Architecture, Chain, Waypoint
 from archgen.simulation import SimulationResult, simulate_system
-from archgen.simulation.analysis_bounds import find_publish_pauses
+from archgen.simulation.chain_witnesses import find_publish_pauses
 from archgen.timing.analysis import Analysis, ChainResult
 from archgen.timing.chains.chain_bounds import bound_chain, find_data_age
 from archgen.timing.chains.cost_network import CostNetwork

@@ -15,9 +15,9 @@ from archgen.model.architecture import Architecture
 from archgen.timing.analysis import Analysis, ChainResult
 from archgen.timing.chains.chain_advice import advise_on_chain
 from archgen.timing.chains.chain_bounds import bound_all_chains
+from archgen.timing.chains.chain_verdicts import find_read_ages
 from archgen.timing.chains.element_index import MeasuredBasis
 from archgen.timing.chains.fused_inputs import find_fused_inputs
-from archgen.timing.chains.read_ages import find_read_ages
 from archgen.timing.figures.figure_wording import format_duration
 from archgen.timing.run_analysis import analyse_architecture
 from tests.timing.hand_reader import read_equations

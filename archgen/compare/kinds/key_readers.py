@@ -201,7 +201,6 @@ def _read_host(node: Node, context: ReadContext) -> str | None:
 
 
 def _read_callback_groups(node: Node, context: ReadContext) -> Mapping[str, object]:
-    """Return the components of each callback group."""
     return {
         name: unordered_values(context.matched_ids.common_id("component", component) for component in members)
         for name, members in node.callback_groups.items()

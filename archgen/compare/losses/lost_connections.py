@@ -13,7 +13,6 @@ from archgen.diagnostics import join_words
 from archgen.frozen import NamedTuple, replace
 from archgen.grouping import group_pairs
 from archgen.model.architecture import Architecture, UseCase
-from archgen.model.component import Connection
 from archgen.model.graph_search import find_reachable
 from archgen.model.step_connections import ConnectedStep, StepConnection, StepConnections, UseCaseSteps
 from archgen.model.use_case_steps import Step, StepEnd
@@ -89,7 +88,12 @@ def find_redirected_connections(context: ChangeContext) -> Iterator[PartnerLoss]
             new = new_ports.get(_find_common_port(context, old.shell_port))
             sources = {context.matched_ids.common_id("output", each) for each in old.outputs}
             is_gone = any(context.versions.is_removed("output", each) for each in sources)
-            if new is None or is_gone or sources <= set(new.outputs) or partner in _find_shell_owners(context, new):
+            if (
+                new is None
+                or is_gone
+                or sources <= set(new.outputs)
+                or partner in context.lasting_owners("composed", (new.shell_port or "").rpartition(".")[0])
+            ):
                 continue
             old_names, new_names = map(tick_sorted_names, (old.outputs, new.outputs))
             name = context.name_partner(partner)
@@ -100,10 +104,6 @@ def find_redirected_connections(context: ChangeContext) -> Iterator[PartnerLoss]
 def _find_common_port(context: ChangeContext, shell_port: str | None) -> str:
     shell, _, name = (shell_port or "").rpartition(".")
     return f"{context.matched_ids.common_id('composed', shell)}.{name}"
-
-
-def _find_shell_owners(context: ChangeContext, connection: Connection) -> frozenset[str]:
-    return context.lasting_owners("composed", (connection.shell_port or "").rpartition(".")[0])
 
 
 def _is_own_edit(context: ChangeContext, input_id: str, sources: Iterable[str]) -> bool:

@@ -160,7 +160,6 @@ def _format_bound(value: TimingValue | None) -> str:
 def _grown_activities(
     causes: TimingCauses, old_terms: Iterable[ChainTerm], new_terms: Iterable[ChainTerm]
 ) -> list[str]:
-    """Return the activities whose terms grew."""
     terms_by_activity = {term.activity: term for term in old_terms}
     activity_ids = []
     for term in new_terms:

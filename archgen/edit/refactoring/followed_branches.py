@@ -20,7 +20,7 @@ from archgen.edit.refactoring.judged_version import JudgedVersion, judge_edited,
 from archgen.edit.refactoring.moved_lines import EntryMove, MovedLines
 from archgen.edit.refactoring.renamed_ids import RenamedIds
 from archgen.frozen import NamedTuple, dataclass, field
-from archgen.merge.branch_merge import FileConflict, FollowedBranches
+from archgen.merge.branch_results import FileConflict, FollowedBranches
 from archgen.merge.tree_merge import MappingValue, MergedValue, read_merged_value
 from archgen.pipeline import CheckedProject, VersionCache
 from archgen.syntax.yaml_tree import MappingNode, YamlNode, find_value, list_entries

@@ -11,8 +11,7 @@ from typing import Any
 from archgen.timing.analysis import Analysis, ChainResult, ChainTerm, ResourceLoad
 from archgen.timing.chains.chain_bounds import BoundedPath
 from archgen.timing.chains.fused_inputs import FusedInputs, find_fused_inputs
-from archgen.timing.figures.timing_values import TimingValue
-from archgen.timing.figures.value_arithmetic import is_known_bound
+from archgen.timing.figures.timing_values import TimingValue, is_known_bound
 from archgen.timing.search.proposals import Proposal
 from archgen.timing.system.timing_system import Arc
 

@@ -18,8 +18,7 @@ from archgen.timing.chains.chain_bounds import BoundedPath
 from archgen.timing.chains.chain_verdicts import VERDICT_WORDS
 from archgen.timing.chains.missing_figures import describe_gaps
 from archgen.timing.figures import figure_wording
-from archgen.timing.figures.timing_values import TimingValue
-from archgen.timing.figures.value_arithmetic import list_assumptions
+from archgen.timing.figures.timing_values import TimingValue, list_assumptions
 from archgen.timing.search.chain_budgets import ChainBudget, FactorBudget, FigureBudget, PartnerShare
 from archgen.timing.search.proposals import Proposal
 

@@ -17,10 +17,9 @@ from archgen.timing.chains.loop_rounds import LoopRound
 from archgen.timing.chains.missing_figures import describe_gaps
 from archgen.timing.figures import figure_wording
 from archgen.timing.figures.figure_wording import name_unknown_reason
-from archgen.timing.figures.timing_values import TimingValue
-from archgen.timing.figures.value_arithmetic import NO_MATCH_NOTE, is_unfound
+from archgen.timing.figures.timing_values import NO_MATCH_NOTE, TimingValue, is_unfound
+from archgen.timing.load.host_loads import list_turn_notes
 from archgen.timing.load.host_verdicts import name_host_verdict
-from archgen.timing.load.resource_loads import list_turn_notes
 from archgen.timing.search.proposals import Proposal
 from archgen.timing.system.thread_pools import find_joint_nodes
 

@@ -21,14 +21,7 @@ from archgen.link.promise_reading import read_deprecation
 from archgen.link.reference_resolution import ReferenceResolver
 from archgen.link.value_readers import read_element, read_operations, read_values
 from archgen.model.architecture import PortEdge, list_leaf_ports
-from archgen.model.component import (
-    Component,
-    ComponentType,
-    Connection,
-    Group,
-    Input,
-    Output,
-)
+from archgen.model.component import Component, ComponentType, Connection, Group, Input, Output
 from archgen.model.coordinate_frames import Frame
 from archgen.model.message_types import ConceptualType
 from archgen.model.path_resolver import title_from_id
@@ -36,7 +29,7 @@ from archgen.model.promise import Deprecation
 from archgen.syntax.yaml_tree import MappingEntry, MappingNode
 
 if TYPE_CHECKING:
-    from archgen.link.open_shells import OpenShells
+    from archgen.link.port_sources import OpenShells
 
 
 def declare_component_types(expansion: ExpandedProject, resolver: ReferenceResolver) -> dict[str, ComponentType]:
@@ -153,8 +146,7 @@ def declare_groups(
     if outline.expansion:
         # Imported here: in most projects no component holds others.
         from archgen.link.automatic_connections import join_ports
-        from archgen.link.open_shells import OpenShells
-        from archgen.link.port_sources import PortSources
+        from archgen.link.port_sources import OpenShells, PortSources
 
         sources = PortSources(outline, resolver, types)
         join_ports(outline, sources, resolver)

@@ -8,8 +8,7 @@ from archgen.diagnostics import Diagnostic, Label
 from archgen.frozen import NamedTuple
 from archgen.link import mapping_values, sanity_checks
 from archgen.link.declare.handed_parameters import HandedParameters
-from archgen.link.inner_names import find_inner_component
-from archgen.link.reference_resolution import ReferenceResolver
+from archgen.link.reference_resolution import ReferenceResolver, find_inner_component
 from archgen.link.value_readers import read_values
 from archgen.model.coordinate_frames import Frame
 from archgen.model.path_resolver import ElementRef

@@ -13,10 +13,9 @@ from archgen.frozen import dataclass, replace
 from archgen.link import mapping_values, sanity_checks
 from archgen.link.declare.component_nodes import ImplementingNodes
 from archgen.link.declare.start_declaration import declare_start, read_command
-from archgen.link.declare.timing_declaration import declare_timing
+from archgen.link.declare.timing_declaration import TimingMerger, declare_timing
 from archgen.link.element_outline import ElementOutline
 from archgen.link.link_memory import LinkedNode, LinkMemory
-from archgen.link.merged_timing import TimingMerger
 from archgen.link.parameter_texts import flatten_parameters
 from archgen.link.path_guesses import take_path_end
 from archgen.link.port_resolution import PortResolver

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable
 from typing import TYPE_CHECKING, Any
 
 from archgen.diagnostics import NO_SPAN, Label
@@ -173,12 +173,8 @@ def _join_promises(promises: Iterable[Promise | None]) -> Promise | None:
         if any(_read_promised(each, key) != _read_promised(first, key) for each in others)
     }
     joined = replace(first, **differing)
-    return joined if any(_list_kept(joined)) else None
+    return joined if any(joined.list_kept()) else None
 
 
 def _read_promised(promise: Promise | None, key: str) -> object:
     return getattr(promise, key) if promise else None
-
-
-def _list_kept(promise: Promise) -> Iterator[str]:
-    return (key for key, _ in promise.list_kept())

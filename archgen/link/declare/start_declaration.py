@@ -3,18 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from typing import TYPE_CHECKING
 
-from archgen.diagnostics import Diagnostic
+from archgen.diagnostics import Diagnostic, Span
 from archgen.link import mapping_values, sanity_checks
-from archgen.link.inner_names import find_inner_component
+from archgen.link.reference_resolution import ReferenceResolver, find_inner_component
 from archgen.link.value_readers import read_values
 from archgen.model.start_up import ReadyConditions, StartTarget, StartUp
 from archgen.syntax.yaml_tree import MappingEntry, MappingNode, ScalarNode, SequenceNode, list_entries
-
-if TYPE_CHECKING:
-    from archgen.diagnostics import Span
-    from archgen.link.reference_resolution import ReferenceResolver
 
 _NOT_INHERITED = frozenset({"ready", "once"})
 """What a composed component says of itself, and not of each node inside."""

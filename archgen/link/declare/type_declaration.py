@@ -8,21 +8,21 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from itertools import chain
-from typing import TYPE_CHECKING
 
 from archgen.diagnostics import Diagnostic, Label, find_closest, first_written_span
 from archgen.frozen import dataclass, replace
 from archgen.link import mapping_values
-from archgen.link.data_types.field_reading import TypeReading, read_type_content
 from archgen.link.data_types.field_types import (
     FieldTypeReader,
+    OversizedType,
     TypeMention,
     TypeSources,
+    add_used_types,
     find_unbound_names,
     is_bound_name,
     list_held_names,
 )
-from archgen.link.data_types.used_types import OversizedType, add_used_types
+from archgen.link.data_types.message_definitions import TypeDefinition, TypeReading, read_type_content
 from archgen.link.element_outline import ElementOutline
 from archgen.link.promise_reading import read_deprecation
 from archgen.link.value_readers import read_values
@@ -30,9 +30,6 @@ from archgen.model.graph_search import find_rings
 from archgen.model.message_types import PART_KEYS, ConceptualType, DataField, full_message_name
 from archgen.model.ros_distro import is_ros_1
 from archgen.syntax.yaml_tree import MappingEntry, MappingNode
-
-if TYPE_CHECKING:
-    from archgen.link.data_types.message_definitions import TypeDefinition
 
 
 @dataclass(frozen=True, slots=True)

@@ -16,8 +16,7 @@ from archgen.language.language_tables import DECLARING_KEYS, KEYS, SECTION_KINDS
 from archgen.link import mapping_values
 from archgen.link.link_memory import LinkMemory
 from archgen.link.slice_merging import declares_itself, find_incomplete
-from archgen.link.variants.element_removal import ElementRemover
-from archgen.link.variants.variant_selectors import prune_selectors, select_left_out
+from archgen.link.variants.element_removal import ElementRemover, prune_selectors, select_left_out
 from archgen.model.architecture import Architecture
 from archgen.model.selector_evaluation import SelectorEvaluator
 from archgen.syntax.yaml_tree import MappingEntry, MappingNode, ScalarNode

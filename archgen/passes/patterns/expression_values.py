@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Mapping, Sequence
 
-from archgen.compose.type_expressions import bind_type_name
+from archgen.compose.expanded_project import bind_type_name
 from archgen.model.message_types import PART_KEYS
 from archgen.passes.patterns.expressions import Call, Condition, ListOperand, Operand, TextOperand
 from archgen.passes.patterns.matching import COMPONENTS, PatternView

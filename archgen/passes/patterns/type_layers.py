@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
+from archgen.compose.expanded_project import TypeExpression, parse_type_expression
 from archgen.compose.instance_overlay import InstanceOverlay
 from archgen.compose.library_types import library_of_type, list_type_entries
-from archgen.compose.type_expressions import TypeExpression, parse_type_expression
 from archgen.compose.type_table import TypeTable, list_generic_names
 from archgen.diagnostics import Diagnostic
 from archgen.diagnostics.element_origins import TreePath

@@ -13,7 +13,7 @@ from archgen.diagnostics.common_wording import join_words
 from archgen.frozen import NamedTuple
 from archgen.timing.analysis import Analysis, ChainResult, ChainTerm
 from archgen.timing.chains.chain_verdicts import find_lateness
-from archgen.timing.chains.unfound_bounds import (
+from archgen.timing.chains.missing_figures import (
     describe_overload,
     describe_unfound_places,
     find_overloaded_places,
@@ -21,11 +21,11 @@ from archgen.timing.chains.unfound_bounds import (
     find_unfound_places,
 )
 from archgen.timing.figures import figure_wording
-from archgen.timing.figures.timing_values import TimingValue
-from archgen.timing.figures.value_arithmetic import (
+from archgen.timing.figures.timing_values import (
     NO_USE_NOTE,
     REPLACED_WORDS,
     UNLINKED_NOTE,
+    TimingValue,
     is_boundless,
     is_known_bound,
 )

@@ -26,8 +26,9 @@ from archgen.timing.chains.extreme_paths import (
 )
 from archgen.timing.chains.path_search import CostedPath, PathSet, RouteRegion
 from archgen.timing.figures import figure_wording
-from archgen.timing.figures.timing_values import ZERO_VALUE, TimingValue
-from archgen.timing.figures.value_arithmetic import (
+from archgen.timing.figures.timing_values import (
+    ZERO_VALUE,
+    TimingValue,
     is_boundless,
     is_known_bound,
     largest_value,

@@ -32,7 +32,6 @@ def lay_out_between(network: CostNetwork, end_points: Sequence[ChainPoint]) -> t
 
 
 def _build_region(network: CostNetwork, point: ChainPoint) -> RouteRegion:
-    """Return the region of an element."""
     members = frozenset(network.vertex_of[name] for name in point.activities)
     if point.output is None:
         return RouteRegion(members, inside=len(members) > 1)

@@ -14,7 +14,7 @@ from archgen.model.quantity import Quantity
 from archgen.timing.analysis import Analysis, ChainResult
 from archgen.timing.chains.chain_bounds import bound_chain
 from archgen.timing.chains.trigger_arrivals import TriggerArrivals
-from archgen.timing.figures.value_arithmetic import UNLINKED_NOTE
+from archgen.timing.figures.timing_values import UNLINKED_NOTE
 from archgen.timing.system.core_placement import is_missing_cores
 
 IMPROVED_SHARE = Fraction(9, 10)

@@ -13,8 +13,7 @@ from archgen.timing.analysis import Analysis, RunResponse
 from archgen.timing.chains.element_index import ElementIndex, MeasuredBasis
 from archgen.timing.chains.path_search import CostGraph, Hop
 from archgen.timing.chains.step_delays import StepDelays
-from archgen.timing.figures.timing_values import ZERO_VALUE, TimingValue
-from archgen.timing.figures.value_arithmetic import is_boundless, is_known_bound
+from archgen.timing.figures.timing_values import ZERO_VALUE, TimingValue, is_boundless, is_known_bound
 from archgen.timing.system.timing_system import Arc
 
 PathAim = Literal["bound", "reduced reaction", "reduced age", "best"]
@@ -122,7 +121,6 @@ class CostNetwork:
         return (self.steps.link_latency(arc), holding_age, response)
 
     def _build_graph(self, aim: PathAim) -> tuple[CostGraph, list[int]]:
-        """Build the graph of an aim."""
         starts = [self.start_costs(name, aim) for name in self.names]
         steps = [self.step_costs(arc, aim) for arc in self.arcs]
         weigh = _make_scale([*starts, *steps])

@@ -14,8 +14,7 @@ from archgen.timing.analysis import Analysis, ChainResult, EdgeFit, EventPace
 from archgen.timing.chains.chain_regions import lay_out_chain
 from archgen.timing.chains.cost_network import CostNetwork
 from archgen.timing.chains.extreme_paths import find_extreme_path
-from archgen.timing.figures.timing_values import TimingValue
-from archgen.timing.figures.value_arithmetic import is_known_bound, sum_bounds
+from archgen.timing.figures.timing_values import TimingValue, is_known_bound, sum_bounds
 from archgen.timing.system.timing_system import Arc
 
 _LONGEST_CHAIN = 20

@@ -9,8 +9,9 @@ from archgen.diagnostics.common_wording import join_first
 from archgen.frozen import NamedTuple, replace
 from archgen.timing.chains.cost_network import CostNetwork, PathAim
 from archgen.timing.chains.path_search import CostedPath, PathSet, RouteRegion, find_paths
-from archgen.timing.figures.timing_values import UNKNOWN_VALUE, TimingValue
-from archgen.timing.figures.value_arithmetic import (
+from archgen.timing.figures.timing_values import (
+    UNKNOWN_VALUE,
+    TimingValue,
     is_boundless,
     is_known_bound,
     list_assumptions,

@@ -8,18 +8,18 @@ from fractions import Fraction
 from archgen.diagnostics.common_wording import join_first
 from archgen.diagnostics.source_span import NO_SPAN, Span
 from archgen.timing.analysis import Analysis, ChainResult, ChainTerm, EventPace, HostLoad, Reason
-from archgen.timing.chains.gap_formulas import (
+from archgen.timing.chains.missing_figures import describe_unfound_places, group_by_host
+from archgen.timing.chains.trigger_arrivals import TriggerArrivals
+from archgen.timing.chains.working_lines import (
+    ReasonLine,
+    WorkingLines,
     list_gap_formulas,
     list_lateness_formulas,
     list_wait_formulas,
     multiply_rate,
 )
-from archgen.timing.chains.trigger_arrivals import TriggerArrivals
-from archgen.timing.chains.unfound_bounds import describe_unfound_places, group_by_host
-from archgen.timing.chains.working_lines import ReasonLine, WorkingLines
 from archgen.timing.figures import figure_wording
-from archgen.timing.figures.timing_values import TimingValue
-from archgen.timing.figures.value_arithmetic import is_known_bound, is_unfound, list_assumptions
+from archgen.timing.figures.timing_values import TimingValue, is_known_bound, is_unfound, list_assumptions
 from archgen.timing.load.host_loads import activity_share
 from archgen.timing.load.response_terms import ResponseTerms
 from archgen.timing.rates.link_traffic import find_sending_rate, work_out_link
@@ -278,7 +278,6 @@ def describe_behaviour(activity: Activity, pace: EventPace) -> str:
 
 
 def _reason_lines(reasons: Iterable[Reason], depth: int) -> Iterator[ReasonLine]:
-    """Yield reasons as lines of one depth."""
     return (ReasonLine(depth, reason.text, reason.at) for reason in reasons)
 
 
@@ -292,7 +291,6 @@ def _triggering_activities(analysis: Analysis, name: str) -> list[str]:
 
 
 def _span_of_activity(analysis: Analysis, name: str) -> Span:
-    """Return where an activity is written."""
     activity = analysis.system.activities.get(name)
     return activity.at if activity else NO_SPAN
 

@@ -8,9 +8,8 @@ from fractions import Fraction
 from archgen.frozen import dataclass
 from archgen.timing.analysis import Analysis
 from archgen.timing.chains.step_delays import StepDelays
-from archgen.timing.figures.timing_values import TimingValue
-from archgen.timing.figures.value_arithmetic import is_known_bound, sum_bounds
-from archgen.timing.system.timing_system import Activity, Arc, best_response
+from archgen.timing.figures.timing_values import TimingValue, is_known_bound, sum_bounds
+from archgen.timing.system.timing_system import Arc, best_response
 
 
 @dataclass(frozen=True, slots=True)
@@ -46,25 +45,20 @@ def _list_fused(analysis: Analysis, steps: StepDelays) -> Iterator[FusedInputs]:
             ages = dict(figures.ages) if figures else dict.fromkeys(activity.triggers, gap)
             yield FusedInputs(activity.id, within, TimingValue(within), gap, ages)
         elif steps.arrivals.waits_for_all(activity):
-            arcs = _repeated_arcs(analysis, activity)
-            ages = {arc.input: _age_of_arc(analysis, steps, arc) for arc in arcs}
+            arcs = [
+                arc
+                for arc in analysis.system.arcs_into.get(activity.id, ())
+                if arc.role == "data"
+                and arc.input in activity.triggers
+                and analysis.system.activities[arc.source].behaviour != "once"
+            ]
+            ages = {
+                arc.input: sum_bounds(
+                    (analysis.responses[arc.source].worst, steps.link_latency(arc), steps.holding_age(arc))
+                )
+                for arc in arcs
+            }
             yield FusedInputs(activity.id, None, _find_apart(analysis, arcs, ages), gap, ages)
-
-
-def _repeated_arcs(analysis: Analysis, activity: Activity) -> list[Arc]:
-    """Return the arcs that fire an activity which waits for all, without what is sent only once."""
-    return [
-        arc
-        for arc in analysis.system.arcs_into.get(activity.id, ())
-        if arc.role == "data"
-        and arc.input in activity.triggers
-        and analysis.system.activities[arc.source].behaviour != "once"
-    ]
-
-
-def _age_of_arc(analysis: Analysis, steps: StepDelays, arc: Arc) -> TimingValue:
-    """Return how old a message may be when it is used, since the activation of its source."""
-    return sum_bounds((analysis.responses[arc.source].worst, steps.link_latency(arc), steps.holding_age(arc)))
 
 
 def _find_apart(analysis: Analysis, arcs: list[Arc], ages: dict[str, TimingValue]) -> TimingValue:

@@ -8,8 +8,7 @@ from collections.abc import Sequence
 from archgen.frozen import dataclass
 from archgen.model.graph_search import find_rings
 from archgen.timing.chains.cost_network import CostNetwork
-from archgen.timing.figures.timing_values import TimingValue
-from archgen.timing.figures.value_arithmetic import sum_bounds
+from archgen.timing.figures.timing_values import TimingValue, sum_bounds
 from archgen.timing.system.timing_system import Arc
 
 

@@ -14,8 +14,7 @@ from archgen.model.quantity import Quantity
 from archgen.timing.analysis import Analysis, ChainResult, EventPace
 from archgen.timing.chains.chain_verdicts import SeenVerdict, judge_seen_share
 from archgen.timing.chains.sample_statistics import SampleStatistics
-from archgen.timing.figures.timing_values import UNKNOWN_VALUE, TimingValue
-from archgen.timing.figures.value_arithmetic import add_values, is_known_bound, smallest_value
+from archgen.timing.figures.timing_values import UNKNOWN_VALUE, TimingValue, add_values, is_known_bound, smallest_value
 
 MEASURED_KEYS = {
     "rate": "frequency",

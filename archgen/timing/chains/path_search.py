@@ -116,7 +116,6 @@ class _PathTrail(NamedTuple):
 
 
 def _build_path(cost: int, trail: _PathTrail | None, vertices: Sequence[int]) -> CostedPath:
-    """Build a path from its trail."""
     arcs: list[int] = []
     start = -1
     while trail is not None:

@@ -15,11 +15,13 @@ from archgen.frozen import dataclass, field, replace
 from archgen.timing.analysis import Analysis, RunResponse
 from archgen.timing.chains.trigger_arrivals import TriggerArrivals
 from archgen.timing.figures import figure_wording
-from archgen.timing.figures.timing_values import UNKNOWN_VALUE, ZERO_VALUE, TimingValue
-from archgen.timing.figures.value_arithmetic import (
+from archgen.timing.figures.timing_values import (
     NO_USE_NOTE,
     SATURATED_NOTE,
     UNBOUNDED_VALUE,
+    UNKNOWN_VALUE,
+    ZERO_VALUE,
+    TimingValue,
     is_boundless,
     is_known_bound,
     name_missing_element,

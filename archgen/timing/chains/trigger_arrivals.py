@@ -9,10 +9,13 @@ from math import ceil
 from archgen.diagnostics.common_wording import join_first
 from archgen.frozen import dataclass, field, replace
 from archgen.timing.analysis import Analysis
-from archgen.timing.figures.timing_values import UNKNOWN_VALUE, ZERO_VALUE, TimingValue, UnknownCause
-from archgen.timing.figures.value_arithmetic import (
+from archgen.timing.figures.timing_values import (
     NO_USE_NOTE,
     REPLACED_WORDS,
+    UNKNOWN_VALUE,
+    ZERO_VALUE,
+    TimingValue,
+    UnknownCause,
     is_known_bound,
     multiply_value,
     name_missing_element,

@@ -22,8 +22,9 @@ from archgen.timing.chains.cost_network import CostNetwork
 from archgen.timing.chains.element_index import ElementIndex
 from archgen.timing.chains.extreme_paths import find_extreme_path
 from archgen.timing.chains.path_search import RouteRegion, find_paths
-from archgen.timing.figures.timing_values import ZERO_VALUE, TimingValue
-from archgen.timing.figures.value_arithmetic import (
+from archgen.timing.figures.timing_values import (
+    ZERO_VALUE,
+    TimingValue,
     is_boundless,
     is_known_bound,
     largest_value,

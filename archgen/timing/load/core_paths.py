@@ -6,10 +6,9 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 
 from archgen.frozen import NamedTuple, dataclass, field
 from archgen.timing.load.inner_core import urgency_of
-from archgen.timing.load.level_cascades import EventOrigin
-from archgen.timing.load.run_ways import EntryWay, Priority
+from archgen.timing.load.level_cascades import EntryWay, EventOrigin, Priority
 from archgen.timing.load.shared_cores import SharedCores, ThreadJob, WayKey
-from archgen.timing.system.core_sets import ThreadUnit
+from archgen.timing.system.thread_pools import ThreadUnit
 
 _WayName = tuple[EventOrigin, tuple[str, ...]]
 

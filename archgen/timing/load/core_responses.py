@@ -25,20 +25,22 @@ from archgen.timing.load.busy_windows import (
     longest_wait_for_turn,
     subtract_demand,
 )
-from archgen.timing.load.cascade_demand import ArcModelFinder, CascadeDemand, ModelFinder, look_up_arcs
 from archgen.timing.load.event_streams import EventStreams, settles_at_full_load, streams_of_calls
 from archgen.timing.load.inner_core import InnerCore, urgency_of
-from archgen.timing.load.level_cascades import EventOrigin, LevelCascades
+from archgen.timing.load.level_cascades import (
+    ArcModelFinder,
+    CascadeDemand,
+    EntryWay,
+    EventOrigin,
+    LevelCascades,
+    ModelFinder,
+    Priority,
+    look_up_arcs,
+)
 from archgen.timing.load.queue_orders import QueueBound
 from archgen.timing.load.queue_responses import OrderedCore
-from archgen.timing.load.run_ways import EntryWay, Priority
 from archgen.timing.load.storing_waits import hold_before_activation
-from archgen.timing.load.thread_work import (
-    DIVERGED_CAUSE,
-    OVERLOAD_CAUSE,
-    ThreadWork,
-    WorstResponse,
-)
+from archgen.timing.load.thread_work import DIVERGED_CAUSE, OVERLOAD_CAUSE, ThreadWork, WorstResponse
 from archgen.timing.system.thread_pools import may_skip_ticks
 from archgen.timing.system.timing_system import samples_inputs
 
@@ -172,7 +174,6 @@ class CoreSolver:
             self.queue_bounds = ordered_core.limit(responses, longest, self.budget)
 
     def _note_way(self, key: WayKey, window: LevelWindow) -> None:
-        """Note what bounds a way."""
         self.way_windows.setdefault(key, []).append(window)
 
     def _whole_period(self, name: str, level: Priority, period: int) -> LevelWindow:

@@ -13,21 +13,17 @@ from typing import TypeVar
 from archgen.frozen import replace
 from archgen.model.graph_search import find_strong_components
 from archgen.timing.figures.timing_values import UnknownCause, sum_ratios
+from archgen.timing.load.busy_windows import GroupBudgets
 from archgen.timing.load.core_responses import CoreResponses
-from archgen.timing.load.level_cascades import EventOrigin
+from archgen.timing.load.level_cascades import EntryWay, EventOrigin
 from archgen.timing.load.load_system import build_load_system, list_written_priorities
 from archgen.timing.load.propagation_state import PropagationState
-from archgen.timing.load.run_ways import EntryWay
-from archgen.timing.load.search_budgets import GroupBudgets
 from archgen.timing.load.step_updates import StepUpdates
 from archgen.timing.load.storing_waits import find_core_waits
 from archgen.timing.load.thread_work import DIVERGED_CAUSE, WorstResponse
 from archgen.timing.load.waiting_threads import find_waiting_stores
 from archgen.timing.load.whole_hosts import limit_responses
-from archgen.timing.system.core_placement import (
-    ProcessingResource,
-    find_resources,
-)
+from archgen.timing.system.core_placement import ProcessingResource, find_resources
 from archgen.timing.system.thread_pools import may_skip_ticks
 from archgen.timing.system.timing_system import TimingSystem, samples_inputs
 from archgen.timing.system.trigger_graph import TriggerGraph, find_triggers, has_own_rate

@@ -12,7 +12,7 @@ from archgen.frozen import dataclass
 from archgen.timing.analysis import EventPace, HostLoad, ResponseTime
 from archgen.timing.figures.tick_unit import NS_PER_SECOND
 from archgen.timing.figures.timing_values import ZERO_VALUE, TimingValue
-from archgen.timing.system.fair_hosts import PREEMPTIVE_ORDERS
+from archgen.timing.system.core_placement import PREEMPTIVE_ORDERS
 from archgen.timing.system.thread_pools import name_lane
 from archgen.timing.system.timing_system import TimingSystem
 

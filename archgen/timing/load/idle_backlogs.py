@@ -38,10 +38,9 @@ from archgen.timing.load.busy_windows import (
     WorstActivation,
     round_up_share,
 )
-from archgen.timing.load.cascade_demand import CascadeDemand
 from archgen.timing.load.core_paths import SharedWork, WayWork
 from archgen.timing.load.event_streams import EventStreams, earliest_arrivals, max_arrivals
-from archgen.timing.load.level_cascades import EventOrigin
+from archgen.timing.load.level_cascades import CascadeDemand, EventOrigin
 from archgen.timing.load.shared_cores import SharedCores, WayKey
 
 _MAX_ROUNDS = 25

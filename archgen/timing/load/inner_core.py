@@ -9,9 +9,15 @@ from archgen.frozen import dataclass, replace
 from archgen.timing.figures.timing_values import UnknownCause
 from archgen.timing.load.event_streams import EventStreams
 from archgen.timing.load.inner_triggers import FiringArc, InnerTriggers
-from archgen.timing.load.level_cascades import LevelCascades, build_level_cascades, number_arcs
+from archgen.timing.load.level_cascades import (
+    EntryWay,
+    LevelCascades,
+    Priority,
+    build_level_cascades,
+    find_entry_ways,
+    number_arcs,
+)
 from archgen.timing.load.queue_responses import CoreQueue
-from archgen.timing.load.run_ways import EntryWay, Priority, find_entry_ways
 from archgen.timing.load.thread_work import ThreadWork, find_priorities, lower_crowded_threads
 from archgen.timing.system.core_placement import ProcessingResource
 from archgen.timing.system.thread_pools import works_in_order

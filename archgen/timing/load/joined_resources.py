@@ -17,15 +17,15 @@ from collections.abc import Iterable, Mapping, Sequence
 from archgen.frozen import dataclass, replace
 from archgen.model.graph_search import find_strong_components
 from archgen.timing.load.busy_windows import SearchBudget
-from archgen.timing.load.cascade_demand import ArcModelFinder
 from archgen.timing.load.core_responses import open_core_solver
 from archgen.timing.load.inner_core import InnerCore, prepare_inner_core
 from archgen.timing.load.inner_triggers import InnerTriggers, find_inner_triggers
+from archgen.timing.load.level_cascades import ArcModelFinder
 from archgen.timing.load.resource_waits import find_turn_times
 from archgen.timing.load.response_times import AnalysisEffort, find_responses
 from archgen.timing.load.thread_work import EventModels
 from archgen.timing.system.core_placement import ProcessingResource
-from archgen.timing.system.core_sets import ThreadUnit
+from archgen.timing.system.thread_pools import ThreadUnit
 from archgen.timing.system.timing_system import TimingSystem
 from archgen.timing.system.trigger_graph import TriggerGraph
 

@@ -14,11 +14,17 @@ from itertools import count
 from archgen.frozen import replace
 from archgen.timing.figures.tick_unit import NS_PER_SECOND
 from archgen.timing.figures.timing_values import UnknownCause, sum_ratios, unite_causes
-from archgen.timing.load.busy_windows import ActivityWork, DivergedError, GrowingLoad, SearchBudget, longest_busy_period
+from archgen.timing.load.busy_windows import (
+    ActivityWork,
+    DivergedError,
+    GroupBudgets,
+    GrowingLoad,
+    SearchBudget,
+    longest_busy_period,
+)
 from archgen.timing.load.event_models import sent_model
 from archgen.timing.load.event_propagation import propagate_events
 from archgen.timing.load.propagation_state import PropagationState
-from archgen.timing.load.search_budgets import GroupBudgets
 from archgen.timing.system.timing_system import Arc, TimingSystem, group_arcs
 from archgen.timing.system.trigger_graph import TriggerGraph, find_triggers
 
@@ -32,7 +38,9 @@ SATURATED_CAUSE, DIVERGED_CAUSE = UnknownCause(notes=("unbounded",)), UnknownCau
 def settle_links(system: TimingSystem) -> tuple[TimingSystem, TriggerGraph, PropagationState]:
     """Return the system with the latencies of its links, where only the bandwidth is written, and its state."""
     waits: dict[str, int | None] = {
-        arc.link: 0 for arc in system.arcs if _needs_queueing(system, arc) and arc.link is not None
+        arc.link: 0
+        for arc in system.arcs
+        if arc.link is not None and arc.worst is None and system.bandwidths.get(arc.link)
     }
     group_budgets = GroupBudgets()
     for turn in count(1):
@@ -55,11 +63,6 @@ def settle_links(system: TimingSystem) -> tuple[TimingSystem, TriggerGraph, Prop
         )
     state.searched_terms = group_budgets.spent_terms
     return candidate, trigger_graph, state
-
-
-def _needs_queueing(system: TimingSystem, arc: Arc) -> bool:
-    """Whether an arc's latency is to be computed from its link's bandwidth."""
-    return arc.link is not None and arc.worst is None and bool(system.bandwidths.get(arc.link))
 
 
 def _apply_waits(system: TimingSystem, waits: Mapping[str, int | None]) -> TimingSystem:

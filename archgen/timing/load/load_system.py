@@ -7,8 +7,8 @@ from collections.abc import Iterator, Mapping
 from archgen.frozen import replace
 from archgen.model.declared_timing import SchedulingOrder
 from archgen.model.graph_search import find_strong_components
-from archgen.timing.system.core_sets import CoreSet, find_core_sets, find_free_cores
-from archgen.timing.system.fair_hosts import PREEMPTIVE_ORDERS
+from archgen.timing.system.core_placement import PREEMPTIVE_ORDERS
+from archgen.timing.system.thread_pools import CoreSet, find_core_sets, find_free_cores
 from archgen.timing.system.timing_system import Activity, TimingSystem, group_arcs
 
 

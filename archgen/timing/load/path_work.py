@@ -6,10 +6,9 @@ from collections.abc import Callable, Mapping, Sequence
 
 from archgen.frozen import NamedTuple
 from archgen.timing.load.busy_windows import divide_among_cores
-from archgen.timing.load.cascade_demand import CascadeDemand
 from archgen.timing.load.core_paths import CorePath
 from archgen.timing.load.event_streams import EventStream, EventStreams, max_arrivals
-from archgen.timing.load.level_cascades import EventOrigin
+from archgen.timing.load.level_cascades import CascadeDemand, EventOrigin
 from archgen.timing.load.shared_cores import SharedCores, WayKey
 
 _ENDLESS = 1 << 200

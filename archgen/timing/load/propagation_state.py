@@ -6,10 +6,8 @@ from fractions import Fraction
 
 from archgen.frozen import dataclass, field
 from archgen.timing.figures.timing_values import UnknownCause
-from archgen.timing.load.event_streams import (
-    EventStreams,
-)
-from archgen.timing.load.run_ways import EntryWay
+from archgen.timing.load.event_streams import EventStreams
+from archgen.timing.load.level_cascades import EntryWay
 from archgen.timing.load.thread_work import ThreadWork, WorstResponse
 from archgen.timing.system.timing_system import Arc, TimingSystem
 from archgen.timing.system.trigger_graph import TriggerGraph

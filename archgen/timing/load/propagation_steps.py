@@ -7,22 +7,21 @@ from typing import TYPE_CHECKING
 
 from archgen.frozen import replace
 from archgen.timing.figures.timing_values import UnknownCause
+from archgen.timing.load.busy_windows import GroupBudgets
 from archgen.timing.load.event_streams import EventStreams
-from archgen.timing.load.fair_shares import FairCores, prepare_fair_cores
+from archgen.timing.load.fair_cores import FairCores, prepare_fair_cores
 from archgen.timing.load.inner_core import InnerCore, prepare_inner_core
 from archgen.timing.load.inner_triggers import InnerTriggers, find_inner_triggers
 from archgen.timing.load.joined_resources import JoinedResources, find_joined_resources
+from archgen.timing.load.level_cascades import EntryWay, begin_way, find_run_arcs
 from archgen.timing.load.propagation_state import PropagationState
 from archgen.timing.load.queue_responses import find_core_queue
-from archgen.timing.load.run_ways import EntryWay, begin_way, find_run_arcs
-from archgen.timing.load.search_budgets import GroupBudgets
 from archgen.timing.load.shared_cores import prepare_shared_cores
 from archgen.timing.load.single_cores import SingleCores, find_single_cores
 from archgen.timing.load.transactions import find_transactions
 from archgen.timing.load.waiting_threads import model_roaming_work
 from archgen.timing.load.whole_hosts import HostLimit, find_whole_hosts
-from archgen.timing.system.core_placement import ProcessingResource
-from archgen.timing.system.resource_division import split_resources
+from archgen.timing.system.core_placement import ProcessingResource, split_resources
 from archgen.timing.system.timing_system import Arc, find_request, is_taken_answer
 from archgen.timing.system.trigger_graph import has_own_rate
 

@@ -10,9 +10,9 @@ from archgen.frozen import dataclass, field
 from archgen.model.declared_timing import SchedulingOrder
 from archgen.timing.figures.timing_values import UnknownCause
 from archgen.timing.load.busy_windows import DivergedError, SearchBudget
-from archgen.timing.load.cascade_demand import ModelFinder
 from archgen.timing.load.event_streams import EventStream, EventStreams, delay_streams, streams_of_calls
 from archgen.timing.load.inner_triggers import InnerTriggers
+from archgen.timing.load.level_cascades import EntryWay, ModelFinder
 from archgen.timing.load.load_system import order_of_core
 from archgen.timing.load.queue_orders import (
     QueueBound,
@@ -24,15 +24,9 @@ from archgen.timing.load.queue_orders import (
     share_rounds,
     work_of_round,
 )
-from archgen.timing.load.run_ways import EntryWay
 from archgen.timing.load.thread_work import WorstResponse
 from archgen.timing.system.core_placement import ProcessingResource
-from archgen.timing.system.thread_pools import (
-    count_entities,
-    find_crowded_pools,
-    is_reentrant,
-    list_waiting_arcs,
-)
+from archgen.timing.system.thread_pools import count_entities, find_crowded_pools, is_reentrant, list_waiting_arcs
 from archgen.timing.system.timing_system import Activity, Arc, TimingSystem, is_sampled, samples_inputs
 
 QueueOrder = Literal["non_preemptive", "fifo", "ros2_executor", "edf"]

@@ -7,25 +7,23 @@ from itertools import chain
 
 from archgen.frozen import replace
 from archgen.timing.figures.timing_values import ResponseTier, UnknownCause
-from archgen.timing.load.busy_windows import DivergedError, SearchBudget, WorstActivation
+from archgen.timing.load.busy_windows import DivergedError, GroupBudgets, SearchBudget, WorstActivation
 from archgen.timing.load.core_responses import CoreResponses, CoreSolver
-from archgen.timing.load.core_terms import CoreTerms, explain_core_hold, explain_core_window, explain_queue_bound
-from archgen.timing.load.fair_terms import FairTerms
+from archgen.timing.load.core_terms import (
+    CoreTerms,
+    FairTerms,
+    explain_core_hold,
+    explain_core_window,
+    explain_queue_bound,
+)
+from archgen.timing.load.level_cascades import EntryWay
 from archgen.timing.load.load_system import list_written_priorities
 from archgen.timing.load.propagation_state import PropagationState
 from archgen.timing.load.queue_responses import QUEUE_TIERS
 from archgen.timing.load.response_times import AnalysisEffort, find_lone_activation, find_responses
-from archgen.timing.load.run_ways import EntryWay
-from archgen.timing.load.search_budgets import GroupBudgets
 from archgen.timing.load.shared_core_terms import SharedCoreTerms
 from archgen.timing.load.step_updates import StepUpdates
-from archgen.timing.load.thread_work import (
-    CoreWindow,
-    EventModels,
-    WorstResponse,
-    build_core_threads,
-    find_work,
-)
+from archgen.timing.load.thread_work import CoreWindow, EventModels, WorstResponse, build_core_threads, find_work
 from archgen.timing.load.transaction_windows import ENDLESS, TransactionWindows, explain_way_window
 from archgen.timing.load.whole_hosts import list_host_limits
 from archgen.timing.load.work_terms import (

@@ -7,13 +7,12 @@ from fractions import Fraction
 
 from archgen.timing.figures.timing_values import sum_fractions
 from archgen.timing.load.busy_windows import SHARE_BITS, SearchBudget, find_blocked_time, round_up_share
-from archgen.timing.load.cascade_demand import CascadeDemand
 from archgen.timing.load.core_paths import CorePath, CorePaths
 from archgen.timing.load.idle_backlogs import IdleBacklog
-from archgen.timing.load.run_ways import EntryWay
+from archgen.timing.load.level_cascades import CascadeDemand, EntryWay
 from archgen.timing.load.shared_cores import SharedCores, WayKey
 from archgen.timing.load.whole_hosts import HostLimit
-from archgen.timing.system.core_sets import ThreadUnit
+from archgen.timing.system.thread_pools import ThreadUnit
 
 _REFINING_TERMS = 80_000
 """Terms for which bounds in any order are looked for below the limits that a backlog gives: some 50 ms' worth."""

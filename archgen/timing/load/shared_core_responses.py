@@ -22,7 +22,6 @@ from functools import cache
 
 from archgen.timing.figures.timing_values import ResponseTier, UnknownCause, unite_causes
 from archgen.timing.load.busy_windows import DivergedError, SearchBudget, WorstActivation
-from archgen.timing.load.cascade_demand import ArcModelFinder, CascadeDemand, look_up_arcs
 from archgen.timing.load.core_paths import CorePath, CorePaths, LastStep, build_thread_work
 from archgen.timing.load.core_responses import CoreResponses
 from archgen.timing.load.event_streams import (
@@ -33,15 +32,10 @@ from archgen.timing.load.event_streams import (
     streams_of_calls,
 )
 from archgen.timing.load.idle_backlogs import find_idle_backlog
+from archgen.timing.load.level_cascades import ArcModelFinder, CascadeDemand, EntryWay, look_up_arcs
 from archgen.timing.load.load_system import list_storing_ids
 from archgen.timing.load.path_work import PathWork
-from archgen.timing.load.run_ways import EntryWay
-from archgen.timing.load.shared_core_limits import (
-    CoreShares,
-    SharedCoreLimits,
-    has_priorities,
-    open_refining_budget,
-)
+from archgen.timing.load.shared_core_limits import CoreShares, SharedCoreLimits, has_priorities, open_refining_budget
 from archgen.timing.load.shared_cores import WayKey
 from archgen.timing.load.storing_waits import hold_beside_others
 from archgen.timing.load.thread_work import DIVERGED_CAUSE, OVERLOAD_CAUSE, WorstResponse
@@ -172,7 +166,11 @@ class SharedCoreSolver:
         for unit in self.cores.own_units:
             if shares.fills_thread(unit):
                 self._mark_boundless(unit, OVERLOAD_CAUSE)
-        boundless_ids = self._list_boundless_foreign()
+        boundless_ids = [
+            name
+            for name in sorted(self.cores.foreign_ids)
+            if (response := self.known_responses.get(name)) is None or response.value is None
+        ]
         order = self.cores.inner_triggers.order
         full_names = [
             name
@@ -180,13 +178,6 @@ class SharedCoreSolver:
             if name not in self.limits.of_host and shares.fills_core((name,), self.paths.look_up((name,)))
         ]
         self._mark_boundless([*boundless_ids, *full_names], DIVERGED_CAUSE)
-
-    def _list_boundless_foreign(self) -> list[str]:
-        return [
-            name
-            for name in sorted(self.cores.foreign_ids)
-            if (response := self.known_responses.get(name)) is None or response.value is None
-        ]
 
     def _mark_boundless(self, names: Iterable[str], cause: UnknownCause) -> None:
         """Note that some activities have no bound: any amount of what is pending comes in the way of others at last."""

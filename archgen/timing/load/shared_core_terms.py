@@ -11,11 +11,10 @@ from archgen.timing.load.core_paths import CorePath, SharedWork, WayWork, build_
 from archgen.timing.load.core_terms import OWN_JOBS
 from archgen.timing.load.event_streams import max_arrivals
 from archgen.timing.load.idle_backlogs import IdleBacklog
-from archgen.timing.load.level_cascades import EventOrigin
+from archgen.timing.load.level_cascades import EntryWay, EventOrigin
 from archgen.timing.load.load_system import list_storing_ids
 from archgen.timing.load.path_work import CoreBlock, split_lanes
 from archgen.timing.load.propagation_state import PropagationState
-from archgen.timing.load.run_ways import EntryWay
 from archgen.timing.load.shared_core_responses import SharedCoreSolver
 from archgen.timing.load.work_terms import (
     ONCE,

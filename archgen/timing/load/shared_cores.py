@@ -7,12 +7,17 @@ from collections.abc import Collection, Iterable, Iterator, Mapping
 from archgen.frozen import NamedTuple, dataclass, replace
 from archgen.timing.load.inner_core import rank_threads
 from archgen.timing.load.inner_triggers import FiringArc, InnerTriggers
-from archgen.timing.load.level_cascades import EventOrigin, LevelCascades, build_level_cascades, number_arcs
-from archgen.timing.load.run_ways import EntryWay, find_entry_ways
+from archgen.timing.load.level_cascades import (
+    EntryWay,
+    EventOrigin,
+    LevelCascades,
+    build_level_cascades,
+    find_entry_ways,
+    number_arcs,
+)
 from archgen.timing.load.thread_work import ThreadWork
 from archgen.timing.system.core_placement import ProcessingResource
-from archgen.timing.system.core_sets import ThreadUnit
-from archgen.timing.system.thread_pools import fills_cores, find_crowded_pools, find_thread_count
+from archgen.timing.system.thread_pools import ThreadUnit, fills_cores, find_crowded_pools, find_thread_count
 from archgen.timing.system.timing_system import TimingSystem
 
 WayKey = tuple[str, int]
@@ -111,20 +116,15 @@ def find_ways_anew(
 ) -> tuple[InnerTriggers, dict[str, tuple[EntryWay, ...]]]:
     """Return the ways to each activity, and the triggers without those into what too many ways lead to."""
     ways_to = find_entry_ways(system, inner_triggers, number_arcs(inner_triggers)[0])
-    crowded_ids = _find_crowded_ids(inner_triggers, ways_to)
-    if crowded_ids:
-        inner_triggers = begin_anew(inner_triggers, crowded_ids)
-        ways_to = find_entry_ways(system, inner_triggers, number_arcs(inner_triggers)[0])
-    return inner_triggers, ways_to
-
-
-def _find_crowded_ids(inner_triggers: InnerTriggers, ways_to: Mapping[str, tuple[EntryWay, ...]]) -> frozenset[str]:
-    """Return the activities to which too many ways lead: they begin ways of their own, with their own event models."""
-    return frozenset(
+    crowded_ids = frozenset(
         name
         for name, ways in ways_to.items()
         if ways[0].entry == EventOrigin("activity", name) and name not in inner_triggers.entry_ids
     )
+    if crowded_ids:
+        inner_triggers = begin_anew(inner_triggers, crowded_ids)
+        ways_to = find_entry_ways(system, inner_triggers, number_arcs(inner_triggers)[0])
+    return inner_triggers, ways_to
 
 
 def begin_anew(inner_triggers: InnerTriggers, crowded_ids: Collection[str]) -> InnerTriggers:

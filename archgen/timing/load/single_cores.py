@@ -16,7 +16,7 @@ from archgen.timing.load.event_streams import EventStreams, delay_streams
 from archgen.timing.load.response_times import AnalysisEffort, find_responses
 from archgen.timing.load.thread_work import EventModels, WorstResponse
 from archgen.timing.system.core_placement import ProcessingResource
-from archgen.timing.system.core_sets import CoreSet, ThreadUnit
+from archgen.timing.system.thread_pools import CoreSet, ThreadUnit
 from archgen.timing.system.timing_system import TimingSystem
 
 

@@ -8,26 +8,23 @@ from typing import TYPE_CHECKING
 
 from archgen.timing.figures.timing_values import UnknownCause, is_same_cause
 from archgen.timing.load.busy_windows import SearchBudget
-from archgen.timing.load.cascade_demand import ArcModelFinder, look_up_arcs
 from archgen.timing.load.core_responses import CoreResponses, CoreSolver, open_core_solver
 from archgen.timing.load.event_models import activation_model, arriving_model
 from archgen.timing.load.event_streams import EventStreams
-from archgen.timing.load.fair_shares import FAIR_TERMS, FairCores, FairSolver
+from archgen.timing.load.fair_cores import FairCores
+from archgen.timing.load.fair_shares import FAIR_TERMS, FairSolver
 from archgen.timing.load.inner_triggers import FiringArc
-from archgen.timing.load.level_cascades import EventOrigin
+from archgen.timing.load.level_cascades import ArcModelFinder, EntryWay, EventOrigin, look_up_arcs
 from archgen.timing.load.propagation_steps import PropagationSteps
 from archgen.timing.load.queue_orders import QueueBound
 from archgen.timing.load.queue_responses import CoreQueue
 from archgen.timing.load.response_times import AnalysisEffort, find_dedicated_response, find_responses
-from archgen.timing.load.run_ways import EntryWay
 from archgen.timing.load.single_cores import delay_by_response
 from archgen.timing.load.thread_work import EventModels, WorstResponse
 from archgen.timing.load.transaction_windows import ENDLESS, TransactionWindows
 from archgen.timing.load.waiting_threads import find_waiting_responses
 from archgen.timing.load.whole_hosts import HostLimit, limit_responses, list_host_limits
-from archgen.timing.system.core_placement import (
-    ProcessingResource,
-)
+from archgen.timing.system.core_placement import ProcessingResource
 
 if TYPE_CHECKING:
     from archgen.timing.load.shared_core_responses import SharedCoreSolver

@@ -12,8 +12,7 @@ from archgen.timing.figures.timing_values import ResponseTier, UnknownCause, sum
 from archgen.timing.load.busy_windows import ActivityWork, WorstActivation
 from archgen.timing.load.event_streams import EventStreams
 from archgen.timing.system.core_placement import ProcessingResource
-from archgen.timing.system.core_sets import ThreadUnit
-from archgen.timing.system.thread_pools import ThreadPool, find_crowded_pools, name_lane, works_in_order
+from archgen.timing.system.thread_pools import ThreadPool, ThreadUnit, find_crowded_pools, name_lane, works_in_order
 from archgen.timing.system.timing_system import TimingSystem
 
 

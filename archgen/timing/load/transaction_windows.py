@@ -21,14 +21,12 @@ from functools import partial
 from archgen.frozen import NamedTuple
 from archgen.timing.figures.timing_values import UnknownCause
 from archgen.timing.load.busy_windows import ActivityWork, DivergedError, GrowingLoad, SearchBudget, divide_among_cores
-from archgen.timing.load.cascade_demand import ModelFinder
 from archgen.timing.load.event_streams import EventStreams, delay_streams, earliest_arrivals, max_arrivals
-from archgen.timing.load.level_cascades import EventOrigin
-from archgen.timing.load.run_ways import EntryWay
+from archgen.timing.load.level_cascades import EntryWay, EventOrigin, ModelFinder
 from archgen.timing.load.shared_cores import WayKey
 from archgen.timing.load.transactions import Place, PlaceJob, Transactions
 from archgen.timing.load.work_terms import ONCE, CountFormulas, EventCount, FigureWorking, WorkTerm, group_terms
-from archgen.timing.system.core_sets import ThreadUnit
+from archgen.timing.system.thread_pools import ThreadUnit
 
 ENDLESS = 1 << 60
 """Longer than any time that is a bound, in ticks."""

@@ -8,13 +8,11 @@ from archgen.frozen import NamedTuple, dataclass
 from archgen.model.graph_search import find_strong_components
 from archgen.timing.load.inner_core import rank_threads
 from archgen.timing.load.inner_triggers import FiringArc, InnerTriggers, find_inner_triggers
-from archgen.timing.load.level_cascades import EventOrigin, number_arcs
-from archgen.timing.load.run_ways import EntryWay
+from archgen.timing.load.level_cascades import EntryWay, EventOrigin, number_arcs
 from archgen.timing.load.shared_cores import WayKey, begin_anew, find_ways_anew
 from archgen.timing.load.thread_work import ThreadWork
 from archgen.timing.system.core_placement import ProcessingResource
-from archgen.timing.system.core_sets import ThreadUnit
-from archgen.timing.system.thread_pools import find_crowded_pools, find_serial_process, is_reentrant
+from archgen.timing.system.thread_pools import ThreadUnit, find_crowded_pools, find_serial_process, is_reentrant
 from archgen.timing.system.timing_system import Arc, TimingSystem
 from archgen.timing.system.trigger_graph import TriggerGraph
 

@@ -43,10 +43,8 @@ from archgen.timing.load.thread_work import (
     lower_crowded_threads,
     work_utilisation,
 )
-from archgen.timing.system.core_placement import ProcessingResource
-from archgen.timing.system.core_sets import ThreadUnit
-from archgen.timing.system.fair_hosts import PREEMPTIVE_ORDERS
-from archgen.timing.system.thread_pools import find_pool, find_serial_process, is_reentrant, works_in_order
+from archgen.timing.system.core_placement import PREEMPTIVE_ORDERS, ProcessingResource
+from archgen.timing.system.thread_pools import ThreadUnit, find_pool, find_serial_process, is_reentrant, works_in_order
 from archgen.timing.system.timing_system import TimingSystem
 
 ServedWork = Callable[[int | None], "Interference | None"]
@@ -374,7 +372,6 @@ def _ignores_priorities(system: TimingSystem, resource: ProcessingResource) -> b
 
 
 def _name_tier(system: TimingSystem, resource: ProcessingResource) -> ResponseTier:
-    """Return the tier of a thread's response."""
     if resource.host is None and len(resource.units[0]) == 1:
         return "dedicated"
     if len(resource.units[0]) > 1:

@@ -17,7 +17,7 @@ from archgen.timing.load.inner_core import InnerCore, prepare_inner_core
 from archgen.timing.load.inner_triggers import find_inner_triggers
 from archgen.timing.load.thread_work import WorstResponse
 from archgen.timing.system.core_placement import ProcessingResource
-from archgen.timing.system.core_sets import ThreadUnit
+from archgen.timing.system.thread_pools import ThreadUnit
 from archgen.timing.system.timing_system import TimingSystem
 from archgen.timing.system.trigger_graph import TriggerGraph
 

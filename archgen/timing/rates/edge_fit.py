@@ -8,8 +8,7 @@ from fractions import Fraction
 from archgen.frozen import dataclass, field, replace
 from archgen.timing.analysis import EdgeFit, EventPace, ResponseTime
 from archgen.timing.figures.tick_unit import NS_PER_SECOND
-from archgen.timing.figures.timing_values import ZERO_VALUE, TimingValue, UnknownCause
-from archgen.timing.figures.value_arithmetic import add_values, value_of_cause
+from archgen.timing.figures.timing_values import ZERO_VALUE, TimingValue, UnknownCause, add_values, value_of_cause
 from archgen.timing.load.event_models import arriving_model, sample_model
 from archgen.timing.load.event_streams import max_arrivals
 from archgen.timing.load.propagation_state import PropagationState
@@ -142,7 +141,6 @@ def _unknown_of_either(sent_rate: TimingValue, read_rate: TimingValue) -> Timing
 
 
 def _with_assumptions(value: Fraction, sent_rate: TimingValue, read_rate: TimingValue) -> TimingValue:
-    """Return a figure with the assumptions of the rates that it rests on."""
     assumptions = (*sent_rate.assumptions, *read_rate.assumptions)
     return TimingValue(value, assumptions=tuple(dict.fromkeys(assumptions)) if assumptions else ())
 

@@ -12,12 +12,15 @@ from archgen.frozen import NamedTuple
 from archgen.timing.analysis import Analysis, EventPace, LinkLoad, TopicLoad
 from archgen.timing.figures import figure_wording
 from archgen.timing.figures.tick_unit import NS_PER_SECOND
-from archgen.timing.figures.timing_values import ZERO_VALUE, TimingValue, UnknownCause, sum_ratios
-from archgen.timing.figures.value_arithmetic import (
+from archgen.timing.figures.timing_values import (
     UNBOUNDED_VALUE,
+    ZERO_VALUE,
+    TimingValue,
+    UnknownCause,
     add_values,
     multiply_value,
     replace_figure,
+    sum_ratios,
     unknown_value,
     value_of_cause,
 )
@@ -26,7 +29,7 @@ from archgen.timing.load.event_streams import EventStreams, max_arrivals
 from archgen.timing.load.link_queueing import longest_queueing
 from archgen.timing.load.propagation_state import PropagationState
 from archgen.timing.load.work_terms import CountFormulas, EventCount, WorkTerm, group_terms
-from archgen.timing.rates.rate_table import RateTable
+from archgen.timing.rates.triggered_rates import RateTable
 from archgen.timing.system.timing_system import Arc, TimingSystem
 
 _MAX_ARRIVALS = 50_000
@@ -49,7 +52,6 @@ def find_topic_loads(system: TimingSystem, outputs: OutputPaces) -> dict[str, To
 def _build_topic_load(
     system: TimingSystem, name: str, writers: Iterable[tuple[str, str]], readers: Iterable[Arc], outputs: OutputPaces
 ) -> TopicLoad:
-    """Return the load of one topic."""
     size = system.topic_sizes.get(name)
     write_rates = [outputs[writer].rate for writer in writers]
     read_rates = [outputs[arc.source, arc.output].rate for arc in readers]
@@ -91,7 +93,6 @@ def find_link_loads(state: PropagationState, rates: RateTable) -> dict[str, Link
 
 
 def _build_link_load(state: PropagationState, link: str, arcs: Sequence[Arc], rates: RateTable) -> LinkLoad:
-    """Return the load of one link."""
     by_topic: dict[str, list[TimingValue]] = defaultdict(list)
     for arc in arcs:
         by_topic[arc.topic].append(_arc_traffic(rates, arc))

@@ -8,10 +8,13 @@ from fractions import Fraction
 from archgen.frozen import replace
 from archgen.timing.analysis import EventPace, Reason, ResponseTime
 from archgen.timing.figures.tick_unit import NS_PER_SECOND
-from archgen.timing.figures.timing_values import UNKNOWN_VALUE, ZERO_VALUE, TimingValue, UnknownCause
-from archgen.timing.figures.value_arithmetic import (
+from archgen.timing.figures.timing_values import (
     NEVER_FIRES,
     UNBOUNDED_VALUE,
+    UNKNOWN_VALUE,
+    ZERO_VALUE,
+    TimingValue,
+    UnknownCause,
     add_values,
     is_boundless,
     multiply_value,
@@ -20,8 +23,7 @@ from archgen.timing.figures.value_arithmetic import (
 )
 from archgen.timing.load.event_streams import EventStreams, collapse_streams
 from archgen.timing.load.propagation_state import PropagationState
-from archgen.timing.rates.rate_table import RateAndGap, RateTable, trigger_span
-from archgen.timing.rates.triggered_rates import find_triggered_rate
+from archgen.timing.rates.triggered_rates import RateAndGap, RateTable, find_triggered_rate, trigger_span
 from archgen.timing.system.thread_pools import may_skip_ticks
 from archgen.timing.system.timing_system import Activity, Arc, best_response
 
@@ -261,7 +263,6 @@ def periodic_reason(rates: RateTable, activity: Activity) -> Reason:
 
 
 def _call_rate(rates: RateTable, arc: Arc) -> TimingValue:
-    """Return the rate of calls along an arc."""
     calling = rates.state.system.activities[arc.source]
     # Of a caller of whose timing nothing is written, one call for each message that it reads would be a mere guess.
     if calling.behaviour_inferred and not calling.places:
@@ -272,7 +273,6 @@ def _call_rate(rates: RateTable, arc: Arc) -> TimingValue:
 
 
 def _call_reason(rates: RateTable, arc: Arc) -> Reason:
-    """Return the reason for calls along an arc."""
     caller = rates.state.system.activities[arc.source]
     call_count = caller.calls.get(arc.output, Fraction(1))
     count_text = "once" if call_count == 1 else f"{float(call_count):g} times"

@@ -7,8 +7,7 @@ from fractions import Fraction
 
 from archgen.frozen import replace
 from archgen.timing.analysis import EventPace, ResponseTime, ServiceLoad
-from archgen.timing.figures.timing_values import TimingValue
-from archgen.timing.figures.value_arithmetic import add_values, is_known_bound, multiply_value, unknown_value
+from archgen.timing.figures.timing_values import TimingValue, add_values, is_known_bound, multiply_value, unknown_value
 from archgen.timing.load.propagation_state import PropagationState
 from archgen.timing.system.timing_system import Activity, Arc, calls_per_activation
 

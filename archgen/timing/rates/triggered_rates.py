@@ -1,4 +1,7 @@
-"""Rate and gap of what inputs fire: any of several, all of several, every n-th, throttled; each with its reasons."""
+"""Rate and gap of what inputs fire: any of several, all of several, every n-th, throttled; each with its reasons.
+
+All rests on the rates found so far.
+"""
 
 from __future__ import annotations
 
@@ -6,14 +9,17 @@ from collections.abc import Iterable, Mapping
 from fractions import Fraction
 from math import ceil
 
-from archgen.frozen import replace
-from archgen.timing.analysis import MatchFigures, Reason
+from archgen.diagnostics.source_span import Span
+from archgen.frozen import dataclass, field, replace
+from archgen.timing.analysis import EventPace, MatchFigures, Reason, ResponseTime
 from archgen.timing.figures.figure_wording import format_duration
 from archgen.timing.figures.tick_unit import NS_PER_SECOND
-from archgen.timing.figures.timing_values import ZERO_VALUE, TimingValue, UnknownCause
-from archgen.timing.figures.value_arithmetic import (
+from archgen.timing.figures.timing_values import (
     NO_MATCH_NOTE,
     UNBOUNDED_VALUE,
+    ZERO_VALUE,
+    TimingValue,
+    UnknownCause,
     add_values,
     is_known_bound,
     largest_value,
@@ -22,19 +28,57 @@ from archgen.timing.figures.value_arithmetic import (
     smallest_value,
     unknown_value,
 )
-from archgen.timing.load.event_models import find_renewed_inputs, input_model, is_always_present
-from archgen.timing.load.event_streams import max_arrivals
-from archgen.timing.load.match_delays import (
+from archgen.timing.load.event_models import (
     MatchedInput,
     MatchWindows,
     find_match_windows,
     find_matched_input,
+    find_renewed_inputs,
     has_same_source,
+    input_model,
+    is_always_present,
     queue_length,
 )
-from archgen.timing.rates.rate_table import RateAndGap, RateTable, trigger_span
+from archgen.timing.load.event_streams import max_arrivals
+from archgen.timing.load.propagation_state import PropagationState
 from archgen.timing.system.thread_pools import may_skip_ticks
 from archgen.timing.system.timing_system import Activity, Arc, best_response
+
+RateAndGap = tuple[TimingValue, TimingValue]
+"""A rate in Hz, and the largest gap in ns."""
+
+
+@dataclass(slots=True)
+class RateTable:
+    """The rates found so far. It is filled by `find_rates`, sources first, and by link_traffic."""
+
+    state: PropagationState
+    responses: Mapping[str, ResponseTime]
+    paces: dict[str, EventPace] = field(default_factory=dict)
+    outputs: dict[tuple[str, str], EventPace] = field(default_factory=dict)
+    derived: dict[str, EventPace] = field(default_factory=dict)
+    matches: dict[str, MatchFigures] = field(default_factory=dict)
+    """What is sure of the matches of those whose inputs are matched by time."""
+    written_rates: dict[tuple[int, int], RateAndGap] = field(default_factory=dict)
+    """Rate and gap by period and jitter (ticks)."""
+    duration_values: dict[int, TimingValue] = field(default_factory=dict)
+    """Durations in ns by ticks."""
+
+    output_traffic: dict[tuple[str, str, str, int | None], TimingValue] = field(default_factory=dict)
+    """Traffic in B/s by activity, output key, topic, and message size."""
+
+    def duration_value(self, ticks: int) -> TimingValue:
+        """Return a duration in ns."""
+        duration = self.duration_values.get(ticks)
+        if duration is None:
+            numerator, denominator = self.state.system.tick.as_integer_ratio()
+            duration = self.duration_values[ticks] = TimingValue(Fraction(ticks * numerator, denominator))
+        return duration
+
+
+def trigger_span(activity: Activity) -> Span:
+    """Return where it is written what fires an activity."""
+    return activity.places.get("trigger", activity.at)
 
 
 def find_triggered_rate(rates: RateTable, activity: Activity) -> tuple[RateAndGap, list[Reason]]:

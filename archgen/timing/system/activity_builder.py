@@ -1,21 +1,65 @@
-"""Activities: what each node does for each of its components, with the behaviour inferred where it is not written."""
+"""Activities: what each node does for each of its components, with the behaviour inferred where it is not written.
+
+What building a system remembers of one version of a project for the next: the activities of the same nodes.
+"""
 
 from __future__ import annotations
 
+import operator
 from collections import Counter, defaultdict
 from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
-from typing import Literal
 
 from archgen.diagnostics.source_span import Span
-from archgen.frozen import dataclass
+from archgen.frozen import NamedTuple, dataclass
 from archgen.model.architecture import Architecture
+from archgen.model.component import Component
 from archgen.model.declared_timing import ActivityBehaviour, InputTiming, MeasuredTimes, Timing
+from archgen.model.known_parts import KnownParts
 from archgen.model.node import Endpoint, Node
 from archgen.model.port_media import is_physical
 from archgen.model.runtime_facts import is_isolated, keeps_each_source
 from archgen.timing.figures.tick_unit import TickUnit, written_period
-from archgen.timing.system.built_parts import ActivitySource, BuiltParts
 from archgen.timing.system.timing_system import Activity, ResourceUse, StoringCallback
+
+
+class ActivitySource(NamedTuple):
+    """All that an activity is built from."""
+
+    node: Node
+    component: Component | None
+    endpoints: Sequence[Endpoint]
+    shared_flags: tuple[bool, ...]
+    """For each endpoint, whether its topic is shared by all nodes; then whether the node has one thread in any case."""
+
+
+class BuiltParts:
+    """Activities of the versions of one project that were built so far, by id. Linking takes over what they share."""
+
+    def __init__(self) -> None:
+        """Start empty."""
+        self._by_unit: dict[TickUnit, KnownParts[tuple[ActivitySource, Activity]]] = {}
+        self._activities: KnownParts[tuple[ActivitySource, Activity]] = KnownParts()
+
+    def start_version(self, tick_unit: TickUnit) -> None:
+        """Take up what is known of the versions in which durations are counted in the same unit."""
+        self._activities = self._by_unit.setdefault(tick_unit, KnownParts())
+
+    def find_activity(self, name: str, source: ActivitySource) -> Activity | None:
+        """Return an activity that was built from the same."""
+        for known, activity in self._activities.list_known(name):
+            if (
+                known.node is source.node
+                and known.component is source.component
+                and known.shared_flags == source.shared_flags
+                and all(map(operator.is_, known.endpoints, source.endpoints))
+            ):
+                return activity
+        return None
+
+    def keep_activity(self, name: str, source: ActivitySource, activity: Activity) -> None:
+        """Remember an activity."""
+        self._activities.keep_part(name, (source, activity))
+
 
 ActivityNames = Mapping[tuple[str, str | None], str]
 """The activity's id, by node id and component id."""
@@ -145,7 +189,7 @@ def _build_activity(part: _NodePart, tick_unit: TickUnit) -> Activity:
         wcet=tick_unit.quantity_to_ticks(timing.wcet),
         bcet=tick_unit.quantity_to_ticks(timing.bcet),
         response=tick_unit.quantity_to_ticks(timing.response),
-        mode=_trigger_mode(timing),
+        mode=timing.trigger.mode if timing.trigger else "any",
         triggers=triggers,
         within=tick_unit.quantity_to_ticks(timing.trigger.within) if timing.trigger else None,
         every=max(timing.every or 1, 1),
@@ -220,10 +264,6 @@ def _demanded_freshness(
         port = architecture.inputs.get(key)
         if port is not None and port.freshness is not None:
             yield key, tick_unit.ns_to_ticks(port.freshness.value)
-
-
-def _trigger_mode(timing: Timing) -> Literal["any", "all", "match"]:
-    return timing.trigger.mode if timing.trigger else "any"
 
 
 def _span_of_part(part: _NodePart) -> Span:

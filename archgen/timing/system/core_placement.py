@@ -4,34 +4,40 @@ A core to which something is pinned alone is kept for what is pinned there; ever
 Where none remains, what is not pinned may run anywhere, and interferes everywhere. A set of cores keeps nobody away: what
 is pinned to one shares it with all that may run on any of its cores. On a host of which nobody wrote how many cores
 it has, only what is pinned has a core that is known, and a single thread, which uses one however many there are.
+
+Hosts that share their cores fairly, as Linux does: which they are, and what is assumed where nobody wrote it.
+
+Processing resources are taken apart: what shares no work can be analysed by itself.
 """
 
 from __future__ import annotations
 
 from collections import defaultdict
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Iterator, Mapping
+from fractions import Fraction
 
 from archgen.frozen import dataclass, replace
+from archgen.model.declared_timing import ASSUMED_LEAD, ASSUMED_SLICE, ASSUMED_TICK, FairScheduling
+from archgen.model.deployment import Host
 from archgen.model.graph_search import find_strong_components
-from archgen.timing.system.core_sets import (
+from archgen.timing.figures.tick_unit import TickUnit
+from archgen.timing.system.thread_pools import (
     CoreSet,
+    ThreadPool,
     ThreadUnit,
+    fills_cores,
     find_core_sets,
     find_cores,
-    find_free_cores,
-    group_lanes,
-)
-from archgen.timing.system.thread_pools import (
-    ThreadPool,
-    fills_cores,
     find_crowded_pools,
+    find_free_cores,
     find_pool,
     find_serial_process,
     find_unplaced_pools,
+    group_lanes,
     group_unplaced,
     name_lane,
 )
-from archgen.timing.system.timing_system import Activity, TimingSystem
+from archgen.timing.system.timing_system import Activity, FairShare, TimingSystem
 
 
 @dataclass(frozen=True, slots=True)
@@ -266,3 +272,130 @@ def _cores_sharing_threads(
         for position in positions:
             neighbours[position] += [other_position for other_position in positions if other_position != position]
     return neighbours
+
+
+PREEMPTIVE_ORDERS = frozenset({None, "fair", "fixed_priority"})
+"""The orders of a host on which what has a priority preempts all that is less urgent."""
+
+
+def build_fair_share(host: Host, tick_unit: TickUnit) -> FairShare:
+    """Return how a host shares its cores, with what is assumed of it."""
+    written = host.fair or FairScheduling()
+    slice_time, tick_time = written.slice or ASSUMED_SLICE, written.tick or ASSUMED_TICK
+    lead = written.lead or ASSUMED_LEAD
+    figures = f"{lead} times a slice of {slice_time} and a tick of {tick_time}"
+    is_all_written = None not in (host.scheduling, written.slice, written.tick, written.lead)
+    turn = tick_unit.ns_to_ticks(slice_time.value + tick_time.value)
+    other_load = written.other_load or Fraction(0)
+    left = 1 - other_load
+    return FairShare(
+        # What is served takes longer beside other programs, a lead as well.
+        -(-lead * turn * left.denominator // left.numerator),
+        turn,
+        other_load,
+        "" if is_all_written else f"threads of {host.id} lead one another by at most {figures}",
+        figures,
+    )
+
+
+def find_fair_share(system: TimingSystem, resource: ProcessingResource) -> FairShare | None:
+    """Return how the threads of a resource share its cores; None where their order is another one, or not the same."""
+    # What may run on other cores as well, or waits for what does, is served elsewhere too: nothing is proven of it.
+    if resource.joined or resource.missing or resource.stranger_units:
+        return None
+    host = resource.host or ""
+    orders = {
+        order
+        for (name, core), order in system.core_orders.items()
+        if name == host and (core in resource.core_set or not resource.core_set)
+    }
+    return system.fair_shares.get(host) if orders <= {"fair"} else None
+
+
+def split_resources(system: TimingSystem, resource_list: Iterable[ProcessingResource]) -> Iterator[ProcessingResource]:
+    """Yield the parts of resources whose responses are found at once."""
+    for resource in resource_list:
+        for part in divide_resource(system, resource):
+            yield from part_waiting_units(system, part)
+
+
+def divide_resource(system: TimingSystem, resource: ProcessingResource) -> Iterable[ProcessingResource]:
+    """Yield one core for each thread where there are cores enough for all of them, else the resource as it is.
+
+    A process of which members wait for threads has as many cores as threads.
+    """
+    if resource.cores == 1 or resource.joined or resource.foreign_units:
+        return (resource,)
+    members = [system.activities[name] for name in resource.members]
+    crowded_pools = find_crowded_pools(system, members)
+    if any(fills_cores(system, activity) and activity.id not in crowded_pools for activity in members):
+        return (resource,)  # as many threads as are asked for
+    units_by_process: dict[tuple[str, int], list[ThreadUnit]] = defaultdict(list)
+    lone_units: list[ThreadUnit] = []
+    for unit in resource.units:
+        serial_process = find_serial_process(system, unit[0])
+        if serial_process is not None:
+            units_by_process[serial_process, 1].append(unit)
+        elif unit[0] in crowded_pools:
+            pool = crowded_pools[unit[0]]
+            units_by_process[pool.key, pool.threads or 1].append(unit)
+        else:
+            lone_units.append(unit)
+    if len(lone_units) + sum(cores for _, cores in units_by_process) > resource.cores:
+        return (resource,)
+    return (
+        *(replace(resource, cores=1, units=(unit,), undisturbed=True) for unit in lone_units),
+        *(replace(resource, cores=cores, units=tuple(units)) for (_, cores), units in units_by_process.items()),
+    )
+
+
+def part_waiting_units(system: TimingSystem, resource: ProcessingResource) -> Iterable[ProcessingResource]:
+    """Yield a part for each thread that waits for resources, and one for all others; the resource where none waits."""
+    is_waiting = any(
+        system.activities[name].suspends for unit in (*resource.units, *resource.foreign_units) for name in unit
+    )
+    waiting_threads = tuple(_find_waiting_threads(system, resource)) if is_waiting else ()
+    if not waiting_threads or resource.missing:
+        yield resource
+        return
+    waiting_units = tuple(unit for units in waiting_threads for unit in units)
+    waiting_ids = {name for unit in waiting_units for name in unit}
+    other_units = tuple(unit for unit in resource.units if unit[0] not in waiting_ids)
+    if other_units:
+        yield replace(
+            resource,
+            units=other_units,
+            foreign_units=(*resource.foreign_units, *waiting_units),
+            roaming_units=(*resource.roaming_units, *waiting_units),
+            neighbour_units=waiting_units,
+        )
+    for units in waiting_threads:
+        neighbours = (*other_units, *(unit for unit in waiting_units if unit not in units))
+        yield replace(
+            resource,
+            # Among one another they wait for threads as if there was one: all of their work lies in one busy window.
+            units=(tuple(name for unit in units for name in unit),),
+            foreign_units=(*resource.foreign_units, *neighbours),
+            neighbour_units=neighbours,
+            waits=True,
+        )
+
+
+def _find_waiting_threads(system: TimingSystem, resource: ProcessingResource) -> Iterable[tuple[ThreadUnit, ...]]:
+    """Yield the units that wait for resources, each alone, and together those of a process with too few threads, which
+    wait for one another. To all others they stay as many: several of its threads run at once.
+    """
+    all_members = [system.activities[name] for unit in (*resource.units, *resource.foreign_units) for name in unit]
+    crowded_pools = find_crowded_pools(system, all_members)
+    waiting_pools = {
+        crowded_pools[activity.id] for activity in all_members if activity.suspends and activity.id in crowded_pools
+    }
+    crowds: dict[ThreadPool, list[ThreadUnit]] = {}
+    for unit in resource.units:
+        pool = crowded_pools.get(unit[0])
+        if pool is not None and pool in waiting_pools:
+            crowds.setdefault(pool, []).append(unit)
+        # Who computes in turn with others that wait is held up by them as if it waited itself.
+        elif find_serial_process(system, unit[0]) or any(system.activities[name].suspends for name in unit):
+            yield (unit,)
+    yield from (tuple(units) for units in crowds.values())

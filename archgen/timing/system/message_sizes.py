@@ -263,7 +263,6 @@ class _SizeComputer:
         return tuple(InterfaceField(f.name, f.type.format(base), f.array) for f in _ACTION_WRAPPERS[part_name])
 
     def _struct_shape(self, name: str) -> WireShape:
-        """Return the shape of a message from those of its fields."""
         fields = self._wire_fields(name)
         if fields is None:
             return WireShape(None, why=_missing_definition_text(name))

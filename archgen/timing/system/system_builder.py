@@ -19,14 +19,14 @@ from archgen.timing.figures.tick_unit import TickUnit, choose_tick_unit
 from archgen.timing.system import message_sizes
 from archgen.timing.system.activity_builder import (
     ActivityNames,
+    BuiltParts,
     activity_of_endpoint,
     build_activities,
     endpoint_key,
     executor_key,
     name_activities,
 )
-from archgen.timing.system.built_parts import BuiltParts
-from archgen.timing.system.fair_hosts import build_fair_share
+from archgen.timing.system.core_placement import build_fair_share
 from archgen.timing.system.timing_system import Activity, Arc, Executor, SharedResource, TimingSystem, group_arcs
 
 LinkRoute = tuple[str | None, int | None, int | None]
@@ -63,7 +63,6 @@ class _Place(NamedTuple):
 
 
 def _place_activities(architecture: Architecture, activities_by_id: Mapping[str, Activity]) -> Mapping[str, _Place]:
-    """Return where each activity runs."""
     devices = _index_devices(architecture)
     return {
         name: _Place(activity.host, *devices.get(activity.component or "", ()))
@@ -109,7 +108,6 @@ class _ArcJoiner:
                     yield replace(answer_arc, role="answer", size=self.size_of(writer, "answer"))
 
     def _data_arc(self, topic: Topic, writer: Endpoint, reader: Endpoint, size: int | None) -> Arc:
-        """Return the arc from a writer to a reader."""
         source = activity_of_endpoint(self.activity_names, writer)
         target = activity_of_endpoint(self.activity_names, reader)
         link, best, worst = self.find_route(self.place_of(source), self.place_of(target))

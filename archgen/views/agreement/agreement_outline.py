@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Sequence
 
 from archgen.grouping import group_pairs
 from archgen.model.architecture import Partner
@@ -176,7 +176,7 @@ def change_mark(changes: AgreementChanges | None, record: InterfaceRecord) -> In
 
 def write_open_points_section(content: AgreementContent) -> Section:
     """List what the two have not settled yet, what is open at one or two interfaces first."""
-    records_by_point = _group_open_points(content.records)
+    records_by_point = group_pairs((point, record) for record in content.records for point in record.terms.open_points)
     shared_points = [point for point, records in records_by_point.items() if len(records) > _MAX_OWN_ROWS]
     rows: list[tuple[Inlines, ...]] = []
     for record in content.records:
@@ -195,11 +195,6 @@ def write_open_points_section(content: AgreementContent) -> Section:
         inline_text.to_inlines("Nothing is open: every term is settled, and nothing contradicts another.")
     )
     return Section("page:open", "Open points", (table if rows else nothing,))
-
-
-def _group_open_points(records: Sequence[InterfaceRecord]) -> Mapping[str, Sequence[InterfaceRecord]]:
-    """Return the interfaces at which each point is open."""
-    return group_pairs((point, record) for record in records for point in record.terms.open_points)
 
 
 def _interface_link(record: InterfaceRecord) -> Text:

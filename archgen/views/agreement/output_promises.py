@@ -13,10 +13,9 @@ from archgen.model.component_nesting import find_relied_output
 from archgen.model.partner_interfaces import PartnerInterface, list_givers
 from archgen.model.promise import Promise, describe_deprecation, format_range
 from archgen.model.quantity import Quantity
-from archgen.timing.chains.read_ages import find_read_ages, find_sent_ages
+from archgen.timing.chains.chain_verdicts import find_read_ages, find_sent_ages
 from archgen.timing.figures.figure_wording import format_duration
-from archgen.timing.figures.timing_values import TimingValue
-from archgen.timing.figures.value_arithmetic import is_boundless
+from archgen.timing.figures.timing_values import TimingValue, is_boundless
 from archgen.timing.system import activity_builder
 from archgen.views import inline_text
 from archgen.views.agreement.interface_timing import JudgedWords, judge_sent_gaps

@@ -204,7 +204,6 @@ def _name_interfaces(changes: Iterable[BoundaryChange], partner_names: Mapping[s
 
 
 def _join_takers(changes: Iterable[BoundaryChange]) -> Iterable[BoundaryChange]:
-    """Return one change for all takers of an interface."""
     joined: dict[object, BoundaryChange] = {}
     for change in changes:
         key = change.interface_id, change.givers, change.old_givers, change.old_takers

@@ -304,5 +304,4 @@ def _count_findings(finding_groups: Sequence[FindingGroup]) -> Iterator[str]:
 
 
 def _sorted_partners(changes: Iterable[Change | Edit]) -> tuple[str, ...]:
-    """Return the partners for whom something breaks."""
     return tuple(sorted({partner for change in changes for partner in change.broken_partners}, key=order_naturally))

@@ -55,7 +55,7 @@ def list_crossings(lookup: Lookup) -> tuple[_Crossing, ...]:
     """Return what crosses links from one host to another, summed by topic, the heaviest first, what is unknown last."""
     if lookup.timing is None:
         return ()
-    from archgen.timing.figures.value_arithmetic import add_values
+    from archgen.timing.figures.timing_values import add_values
     from archgen.timing.rates.link_traffic import measure_arc_traffic
 
     analysis = lookup.timing.analysis
@@ -424,7 +424,7 @@ def _name_flow(lookup: Lookup, crossing: _Crossing, host: str, characters: int) 
 
 
 def _sum_traffic(flows: Sequence[_Crossing]) -> str:
-    from archgen.timing.figures.value_arithmetic import add_values
+    from archgen.timing.figures.timing_values import add_values
 
     return _write_bytes(add_values([each.traffic for each in flows])) if flows else "nothing"
 

@@ -12,8 +12,7 @@ from archgen.model.component import Component
 from archgen.model.partner_interfaces import components_at_ends
 from archgen.timing.chains.chain_advice import sum_known_parts
 from archgen.timing.chains.element_flows import ElementFlow
-from archgen.timing.figures.timing_values import TimingValue, sum_fractions
-from archgen.timing.figures.value_arithmetic import largest_value
+from archgen.timing.figures.timing_values import TimingValue, largest_value, sum_fractions
 from archgen.views import element_references, inline_text
 from archgen.views.agreement import exchange_tables
 from archgen.views.agreement.exchange_tables import PartnerExchange, gather_exchanges

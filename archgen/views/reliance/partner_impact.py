@@ -15,8 +15,7 @@ from archgen.model.requirement import Requirement
 from archgen.model.selector_evaluation import SelectorEvaluator
 from archgen.model.step_connections import ConnectedStep
 from archgen.timing.analysis import ChainResult
-from archgen.timing.figures.timing_values import TimingValue
-from archgen.timing.figures.value_arithmetic import sum_bounds
+from archgen.timing.figures.timing_values import TimingValue, sum_bounds
 from archgen.views.agreement.exchange_tables import PartnerExchange
 from archgen.views.agreement.interface_terms import InterfaceTerms
 from archgen.views.lookup import Lookup

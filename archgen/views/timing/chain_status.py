@@ -25,7 +25,6 @@ def rank_chains(results: Iterable[ChainResult]) -> tuple[ChainResult, ...]:
 
 
 def _chain_rank(result: ChainResult) -> tuple[int, Fraction]:
-    """Return the sort key of a chain."""
     if lacks_only_deadline(result):
         return (len(_VERDICT_RANKS), Fraction(0))
     return (_VERDICT_RANKS[result.verdict], -(used_share(result) or Fraction(0)))

@@ -239,7 +239,6 @@ def _describe_step(term: ChainTerm) -> str:
 
 
 def _make_figures(lookup: Lookup, result: ChainResult) -> Iterator[KeyFigure]:
-    """Yield the figures of a chain at a glance."""
     yield KeyFigure("At the latest", value_format.display_duration(result.bound), "", (), "")
     if result.deadline is not None:
         yield KeyFigure("Deadline", value_format.display_duration(result.deadline), "", (), "")

@@ -8,15 +8,14 @@ from collections.abc import Collection, Iterable, Iterator
 from archgen.model.node import Node
 from archgen.timing.analysis import ChainResult
 from archgen.timing.chains.chain_advice import advise_on_chain
-from archgen.timing.figures.timing_values import ResponseTier, TimingValue
-from archgen.timing.figures.value_arithmetic import list_assumptions
+from archgen.timing.figures.timing_values import ResponseTier, TimingValue, list_assumptions
 from archgen.timing.system.timing_system import Activity
 from archgen.views import element_references, inline_text
 from archgen.views.lookup import Lookup
 from archgen.views.shapes import Block, Fact, Figure, Inlines, Table, Text, make_columns, show_facts
 from archgen.views.timing import chain_charts, load_charts, timing_tables, use_tables, value_format
+from archgen.views.timing.chain_charts import make_late_run_figures
 from archgen.views.timing.flow_tables import list_activities
-from archgen.views.timing.late_run_charts import make_late_run_figures
 from archgen.views.timing.timing_lookup import TimingLookup
 
 _SHOWN_PARTS = 6

@@ -17,8 +17,7 @@ from archgen.timing.analysis import ChainResult
 from archgen.timing.chains.chain_advice import sum_known_parts
 from archgen.timing.chains.element_flows import ElementFlow, UnjudgedWay
 from archgen.timing.figures.tick_unit import NS_PER_SECOND
-from archgen.timing.figures.timing_values import TimingValue, sum_fractions
-from archgen.timing.figures.value_arithmetic import sum_bounds
+from archgen.timing.figures.timing_values import TimingValue, sum_bounds, sum_fractions
 from archgen.timing.system.timing_system import Activity
 from archgen.views import element_references, inline_text
 from archgen.views.lookup import Lookup

@@ -204,7 +204,6 @@ def _make_pieces(
 
 
 def _make_figures(load: HostLoad, cores: int) -> Iterator[KeyFigure]:
-    """Yield the load, what is left, and the fullest core."""
     share = load_charts.share_of_cores(load.utilisation, cores)
     yield KeyFigure("Load", value_format.display_share(share), "", (), "")
     if share.value is not None:
@@ -257,7 +256,6 @@ def _make_core_rows(load: HostLoad) -> Iterator[tuple[Inlines, ...]]:
 
 
 def _make_share_cells(share: TimingValue) -> tuple[Inlines, Inlines]:
-    """Return a bar and its figure."""
     number = str(share.value or 0)
     status: Status = "missed" if share.value is not None and share.value >= 1 else "met"
     meter = Meter(float(share.value or 0), status, is_partial=not share.complete)

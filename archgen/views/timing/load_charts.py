@@ -112,12 +112,10 @@ def _bound_mark(load: HostLoad) -> float | None:
 
 
 def _has_unknown_load(load: HostLoad) -> bool:
-    """Whether the load of any activity is unknown."""
     return any(value.value is None for _, value in load.activity_shares)
 
 
 def _list_unknown_loads(load: HostLoad) -> str:
-    """Name the activities whose load is unknown."""
     return "not known: " + ", ".join(name for name, value in load.activity_shares if value.value is None)
 
 

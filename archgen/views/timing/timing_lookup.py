@@ -102,7 +102,7 @@ def add_late_runs(lookup: TimingLookup) -> TimingLookup:
     late_runs = [(result.id, result.through, result.late_run) for result in lookup.chains if result.late_run]
     if not late_runs:
         return lookup
-    from archgen.simulation.analysis_bounds import find_publish_pauses
+    from archgen.simulation.chain_witnesses import find_publish_pauses
     from archgen.simulation.schedule_log import record_schedule
 
     analysis = lookup.analysis

@@ -8,7 +8,7 @@ from fractions import Fraction
 from archgen.timing.analysis import ChainResult
 from archgen.timing.chains.chain_advice import advise_on_chain, sum_known_parts
 from archgen.timing.chains.chain_verdicts import VERDICT_MEANINGS
-from archgen.timing.chains.unfound_bounds import UnfoundPlace, group_by_host
+from archgen.timing.chains.missing_figures import UnfoundPlace, group_by_host
 from archgen.timing.figures.timing_values import TimingValue
 from archgen.views import inline_text
 from archgen.views.lookup import Lookup

@@ -73,7 +73,6 @@ def display_lower_bound(value: TimingValue) -> str:
 
 @lru_cache(8192)  # a large architecture has few different figures, each on several pages and pictures
 def _format_time(nanoseconds: Fraction, rounding: str) -> str:
-    """Format nanoseconds as ms or s."""
     factor, unit = (10**6, "ms") if nanoseconds < _SECONDS_FROM else (10**9, "s")
     return f"{display_number(nanoseconds / factor, rounding=rounding)} {unit}"
 
@@ -100,7 +99,6 @@ def display_traffic(value: TimingValue) -> str:
 
 @lru_cache(8192)
 def _format_size(byte_count: Fraction) -> str:
-    """Format a number of bytes."""
     factor, unit = next(((factor, unit) for factor, unit in _BYTE_UNITS if byte_count >= factor), (1, "B"))
     return f"{display_number(byte_count / factor)} {unit}"
 

@@ -14,7 +14,7 @@ import pytest
 import yaml
 
 from archgen.checking.checked_packing import pack_checked_project
-from archgen.link.open_shells import OpenShells
+from archgen.link.port_sources import OpenShells
 from archgen.passes.flattening import name_flat_components
 from archgen.passes.linked_tree import LinkedTree
 from archgen.passes.patterns.pattern_registry import find_known_passes

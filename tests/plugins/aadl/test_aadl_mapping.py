@@ -9,9 +9,9 @@ import pytest
 
 from archgen.diagnostics.diagnostic import Severity
 from archgen.importers.foreign_import import ForeignFileError
-from archgen.pipeline import check_text
 from archgen.plugins.aadl.aadl_import import read_aadl
 from archgen.syntax.yaml_writer import write_yaml
+from tests.judged_projects import check_text
 from tests.plugins.aadl.aadl_texts import import_package, merge_slices, tell_notes
 
 

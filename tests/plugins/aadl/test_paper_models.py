@@ -7,9 +7,9 @@ from pathlib import Path
 import pytest
 
 from archgen.diagnostics.diagnostic import Severity
-from archgen.pipeline import check_text
 from archgen.plugins.aadl.aadl_import import read_aadl
 from archgen.syntax.yaml_writer import write_yaml
+from tests.judged_projects import check_text
 from tests.plugins.aadl.aadl_texts import MODELS, merge_slices
 
 LIBRARY = ("cnc", "ros", "topic_properties")

@@ -8,9 +8,9 @@ from pathlib import Path
 import pytest
 
 from archgen.importers.import_formats import list_import_formats
-from archgen.pipeline import check_text
 from archgen.plugins.ros.launch.launch_import import read_launch
 from archgen.syntax.yaml_writer import write_yaml
+from tests.judged_projects import check_text
 from tests.outside_tools import run_judge
 from tests.running import ROOT
 

@@ -7,8 +7,7 @@ from fractions import Fraction
 import pytest
 
 from archgen.timing.chains.chain_verdicts import LimitState, find_worst_state, judge_lower_limit, judge_upper_limit
-from archgen.timing.figures.timing_values import UNKNOWN_VALUE, TimingValue
-from archgen.timing.figures.value_arithmetic import UNBOUNDED_VALUE, unknown_value
+from archgen.timing.figures.timing_values import UNBOUNDED_VALUE, UNKNOWN_VALUE, TimingValue, unknown_value
 
 AT_LEAST, AT_MOST = (
     TimingValue(Fraction(10), complete=False, missing=("x",), side="at least"),

@@ -8,7 +8,7 @@ from typing import Any
 
 import pytest
 
-from archgen.timing.chains.read_ages import ReadAge
+from archgen.timing.chains.chain_verdicts import ReadAge
 from archgen.timing.figures.timing_values import TimingValue
 
 ARC: Any = SimpleNamespace()

@@ -5,8 +5,8 @@ from __future__ import annotations
 import pytest
 
 from archgen.timing.chains.chain_bounds import bound_all_chains
-from archgen.timing.chains.missing_figures import describe_gaps
-from archgen.timing.chains.unfound_bounds import (
+from archgen.timing.chains.missing_figures import (
+    describe_gaps,
     describe_overload,
     describe_unfound_places,
     find_overloaded_places,

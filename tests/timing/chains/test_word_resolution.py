@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from archgen.timing.chains.word_resolution import (
+from archgen.timing.chains.element_index import (
     UnknownNameError,
     ids_ending_in,
     resolve_activities,

@@ -7,9 +7,11 @@ from fractions import Fraction
 
 import pytest
 
-from archgen.timing.figures.timing_values import UNKNOWN_VALUE, TimingValue, UnknownCause
-from archgen.timing.figures.value_arithmetic import (
+from archgen.timing.figures.timing_values import (
     UNBOUNDED_VALUE,
+    UNKNOWN_VALUE,
+    TimingValue,
+    UnknownCause,
     add_values,
     is_boundless,
     is_known_bound,

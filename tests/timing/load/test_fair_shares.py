@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 from archgen.timing.chains.chain_bounds import bound_all_chains
-from archgen.timing.load.fair_shares import ThreadGroup
+from archgen.timing.load.fair_cores import ThreadGroup
 from archgen.timing.run_analysis import analyse_architecture
 from tests.property_sizes import mark_further_samples
 from tests.timing.random_fair import draw_fair_system, simulate_fair

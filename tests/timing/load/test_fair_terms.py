@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from archgen.timing.chains.figure_explanations import explain_word
-from archgen.timing.load.fair_terms import FairTerms
+from archgen.timing.load.core_terms import FairTerms
 from archgen.timing.run_analysis import analyse_architecture
 from tests.timing.random_systems import architecture
 from tests.timing.sketches import sketch

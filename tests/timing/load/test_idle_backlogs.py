@@ -7,15 +7,13 @@ from fractions import Fraction
 import pytest
 
 from archgen.timing.load import idle_backlogs
-from archgen.timing.load.busy_windows import SearchBudget
-from archgen.timing.load.cascade_demand import CascadeDemand
+from archgen.timing.load.busy_windows import GroupBudgets, SearchBudget
 from archgen.timing.load.core_paths import CorePaths, build_thread_work, build_way_works
 from archgen.timing.load.event_propagation import propagate_events
 from archgen.timing.load.event_streams import EventStream
 from archgen.timing.load.idle_backlogs import IdleBacklog, PendingShare, choose_largest_lanes, find_idle_backlog
 from archgen.timing.load.inner_triggers import find_inner_triggers
-from archgen.timing.load.level_cascades import EventOrigin
-from archgen.timing.load.search_budgets import GroupBudgets
+from archgen.timing.load.level_cascades import CascadeDemand, EventOrigin
 from archgen.timing.load.shared_cores import SharedCores, prepare_shared_cores
 from archgen.timing.run_analysis import analyse_architecture
 from archgen.timing.system.core_placement import find_resources

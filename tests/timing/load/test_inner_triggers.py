@@ -7,12 +7,10 @@ from fractions import Fraction
 
 import pytest
 
-from archgen.timing.load.cascade_demand import CascadeDemand
 from archgen.timing.load.event_streams import EventStream
 from archgen.timing.load.inner_core import InnerCore, prepare_inner_core, rank_threads, urgency_of
 from archgen.timing.load.inner_triggers import find_inner_triggers
-from archgen.timing.load.level_cascades import EventOrigin, GateRule
-from archgen.timing.load.run_ways import find_run_arcs
+from archgen.timing.load.level_cascades import CascadeDemand, EventOrigin, GateRule, find_run_arcs
 from archgen.timing.system.core_placement import find_resources
 from archgen.timing.system.system_builder import build_system
 from archgen.timing.system.trigger_graph import find_triggers

@@ -7,7 +7,7 @@ from fractions import Fraction
 
 import pytest
 
-from archgen.timing.load import event_streams, link_queueing, search_budgets
+from archgen.timing.load import busy_windows, event_streams, link_queueing
 from archgen.timing.load.busy_windows import DivergedError, SearchBudget
 from archgen.timing.load.event_propagation import propagate_events
 from archgen.timing.load.host_verdicts import is_below_rate_bound, rate_monotonic_bound
@@ -141,8 +141,8 @@ def test_one_budget_bounds_all_searches(monkeypatch: pytest.MonkeyPatch) -> None
     nodes = {"a @pc": "period: 10 ms, wcet: 1 ms", "b @pc": "period: 10 ms, wcet: 2 ms"}
     system, _ = build_system(read_sketch(nodes, "", "hosts: {pc: {cores: 1}}"))
     for term_count, causes in ((0, ["diverged", "diverged"]), (1000, [3, 3])):
-        monkeypatch.setattr(search_budgets, "_TERMS_PER_GROUP", term_count)
-        monkeypatch.setattr(search_budgets, "_TERMS_PER_MEMBER", 0)
+        monkeypatch.setattr(busy_windows, "_TERMS_PER_GROUP", term_count)
+        monkeypatch.setattr(busy_windows, "_TERMS_PER_MEMBER", 0)
         state = propagate_events(system, find_triggers(system))
         found = [time.cause.notes[0] if time.value is None else time.value for time in state.responses.values()]
         assert found == [cause if isinstance(cause, str) else cause * MS / system.tick for cause in causes]

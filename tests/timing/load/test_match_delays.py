@@ -7,8 +7,7 @@ from dataclasses import replace
 import pytest
 
 from archgen.timing.figures.timing_values import UnknownCause
-from archgen.timing.load.event_streams import EventStream, EventStreams
-from archgen.timing.load.match_delays import (
+from archgen.timing.load.event_models import (
     MatchedInput,
     MatchWindows,
     combine_matched,
@@ -18,6 +17,7 @@ from archgen.timing.load.match_delays import (
     has_same_source,
     queue_length,
 )
+from archgen.timing.load.event_streams import EventStream, EventStreams
 from archgen.timing.load.propagation_state import PropagationState
 from archgen.timing.load.thread_work import WorstResponse
 from archgen.timing.system.timing_system import Activity, Arc

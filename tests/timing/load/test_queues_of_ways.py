@@ -10,10 +10,9 @@ from archgen.timing.figures.timing_values import UnknownCause
 from archgen.timing.load.busy_windows import SearchBudget
 from archgen.timing.load.event_streams import EventStream, EventStreams
 from archgen.timing.load.inner_triggers import InnerTriggers
-from archgen.timing.load.level_cascades import EventOrigin
+from archgen.timing.load.level_cascades import EntryWay, EventOrigin
 from archgen.timing.load.queue_orders import QueuedTask
 from archgen.timing.load.queue_responses import CoreQueue, OrderedCore
-from archgen.timing.load.run_ways import EntryWay
 from archgen.timing.load.thread_work import WorstResponse
 
 ENTRY = EventOrigin("activity", "a")

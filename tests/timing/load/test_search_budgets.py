@@ -7,8 +7,8 @@ from collections.abc import Callable
 import pytest
 
 from archgen.model.architecture import Architecture
+from archgen.timing.load.busy_windows import GroupBudgets
 from archgen.timing.load.link_queueing import settle_links
-from archgen.timing.load.search_budgets import GroupBudgets
 from archgen.timing.run_analysis import analyse_architecture
 from archgen.timing.system.system_builder import build_system
 from tests.quiet_seconds import measure_quiet_seconds

@@ -6,12 +6,12 @@ import pytest
 
 from archgen.timing.analysis import Analysis
 from archgen.timing.chains.chain_bounds import bound_all_chains
-from archgen.timing.load import busy_windows, search_budgets
-from archgen.timing.load.cascade_demand import CascadeDemand
+from archgen.timing.load import busy_windows
 from archgen.timing.load.core_paths import CorePaths
 from archgen.timing.load.event_propagation import propagate_events
 from archgen.timing.load.event_streams import EventStream
 from archgen.timing.load.inner_triggers import find_inner_triggers
+from archgen.timing.load.level_cascades import CascadeDemand
 from archgen.timing.load.path_work import PathWork
 from archgen.timing.load.shared_core_limits import CoreShares
 from archgen.timing.load.shared_core_responses import open_shared_solver
@@ -168,8 +168,8 @@ def test_what_too_many_ways_lead_to_has_events_of_its_own() -> None:
 
 def test_a_search_that_does_not_end_leaves_no_response(monkeypatch: pytest.MonkeyPatch) -> None:
     """Nothing may be looked at: no figure is taken for found."""
-    monkeypatch.setattr(search_budgets, "_TERMS_PER_GROUP", 0)
-    monkeypatch.setattr(search_budgets, "_TERMS_PER_MEMBER", 0)
+    monkeypatch.setattr(busy_windows, "_TERMS_PER_GROUP", 0)
+    monkeypatch.setattr(busy_windows, "_TERMS_PER_MEMBER", 0)
     nodes = {f"n{at} @pc": f"period: 100 ms, {equal('10')}" for at in range(4)}
     system, _ = build_system(read_sketch(nodes, "", "hosts: {pc: {cores: 2}}"))
     found = propagate_events(system, find_triggers(system)).responses

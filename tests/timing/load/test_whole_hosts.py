@@ -7,8 +7,7 @@ from dataclasses import replace
 import pytest
 
 from archgen.timing.load.core_responses import CoreResponses
-from archgen.timing.load.level_cascades import EventOrigin
-from archgen.timing.load.run_ways import EntryWay
+from archgen.timing.load.level_cascades import EntryWay, EventOrigin
 from archgen.timing.load.thread_work import WorstResponse
 from archgen.timing.load.whole_hosts import HostLimit, find_whole_hosts, limit_responses, list_host_limits
 from archgen.timing.system.core_placement import ProcessingResource

@@ -10,8 +10,7 @@ from archgen.link.timing_overrides import apply_overrides
 from archgen.timing.chains.chain_bounds import bound_all_chains
 from archgen.timing.run_analysis import analyse_architecture
 from archgen.timing.search import proposals
-from archgen.timing.search.proposals import find_proposal, find_short_proposal
-from archgen.timing.search.run_configurations import ConfigurationSpace, RunConfiguration
+from archgen.timing.search.proposals import ConfigurationSpace, RunConfiguration, find_proposal, find_short_proposal
 from tests.property_sizes import mark_further_samples
 from tests.timing.random_systems import architecture
 from tests.timing.search.late_systems import draw_late_system, propose_for

@@ -8,7 +8,7 @@ import pytest
 
 from archgen.timing.chains.chain_bounds import bound_all_chains
 from archgen.timing.run_analysis import analyse_architecture
-from archgen.timing.search.run_configurations import ORDERS, ConfigurationSpace, RunConfiguration, TriggerChoice
+from archgen.timing.search.proposals import ORDERS, ConfigurationSpace, RunConfiguration, TriggerChoice
 from tests.timing.random_systems import architecture
 from tests.timing.sketches import sketch
 

@@ -4,7 +4,7 @@ from collections.abc import Callable
 from dataclasses import replace
 
 from archgen.model.architecture import Architecture
-from archgen.timing.system.built_parts import BuiltParts
+from archgen.timing.system.activity_builder import BuiltParts
 from archgen.timing.system.system_builder import build_system
 
 _ROBOT = """

@@ -4,8 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from archgen.timing.system.core_placement import find_resources
-from archgen.timing.system.fair_hosts import find_fair_share
+from archgen.timing.system.core_placement import find_fair_share, find_resources
 from archgen.timing.system.system_builder import build_system
 from tests.timing.random_systems import architecture
 from tests.timing.sketches import sketch

@@ -8,7 +8,7 @@ import pytest
 
 from archgen.views.drawing_set import make_drawings
 from archgen.views.lookup import make_lookup
-from archgen.views.timing.late_run_charts import make_late_run_charts, make_late_run_figures
+from archgen.views.timing.chain_charts import make_late_run_charts, make_late_run_figures
 from archgen.views.timing.timing_lookup import TimingLookup, add_late_runs, analyse_with_chains
 from tests.simulation.late_robot import ROBOT
 from tests.timing.random_systems import architecture
