@@ -9,7 +9,7 @@ from typing import Any
 
 from archgen.diagnostics import format_json, join_words
 from archgen.emit.markdown.comment_sentences import write_code, write_sentence, write_title
-from archgen.emit.markdown.limited_comment import MAX_COMMENT_SIZE, LimitedComment
+from archgen.emit.markdown.comparison_markdown import MAX_COMMENT_SIZE, LimitedComment
 from archgen.forge.forge_api import ForgeError, run_within
 from archgen.forge.pull_request import CommentOutcome, OpenRequest, find_request, put_comment
 from archgen.frozen import NamedTuple

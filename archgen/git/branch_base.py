@@ -3,8 +3,7 @@
 from __future__ import annotations
 
 from archgen.frozen import NamedTuple
-from archgen.git.git_call import run_git
-from archgen.git.git_errors import GitError, ShallowError
+from archgen.git.git_call import GitError, ShallowError, run_git
 from archgen.git.repository_lookup import UNSHALLOW_HINT, GitRepository, look_up_commit, resolve_revision
 
 _MAIN_LINES = ("main", "master", "origin/main", "origin/master")

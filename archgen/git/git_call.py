@@ -7,7 +7,27 @@ from collections.abc import Mapping
 from pathlib import Path
 
 from archgen.frozen import NamedTuple
-from archgen.git.git_errors import GitError
+
+
+class GitError(Exception):
+    """git cannot deliver what was asked for."""
+
+
+class NoRepositoryError(GitError):
+    """There is no repository, or git refuses to read it."""
+
+
+class NoCommitsError(GitError):
+    """Nothing has been committed yet."""
+
+
+class UnknownRevisionError(GitError):
+    """No commit has this name."""
+
+
+class ShallowError(GitError):
+    """The commit is not here because the clone is shallow."""
+
 
 SAFE_COMMAND = (
     "git",

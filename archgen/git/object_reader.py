@@ -8,8 +8,15 @@ import weakref
 from typing import IO, TYPE_CHECKING
 
 from archgen.frozen import NamedTuple
-from archgen.git.git_call import ANSWER_SECONDS, SAFE_COMMAND, GitOutputError, git_environment, read_git_output, run_git
-from archgen.git.git_errors import GitError
+from archgen.git.git_call import (
+    ANSWER_SECONDS,
+    SAFE_COMMAND,
+    GitError,
+    GitOutputError,
+    git_environment,
+    read_git_output,
+    run_git,
+)
 from archgen.git.repository_lookup import GitRepository
 
 if TYPE_CHECKING:

@@ -7,8 +7,7 @@ from pathlib import Path
 
 from archgen.diagnostics import did_you_mean
 from archgen.frozen import dataclass
-from archgen.git.git_call import run_git
-from archgen.git.git_errors import NoCommitsError, NoRepositoryError, ShallowError, UnknownRevisionError
+from archgen.git.git_call import NoCommitsError, NoRepositoryError, ShallowError, UnknownRevisionError, run_git
 
 UNSHALLOW_HINT = "fetch what is missing with `git fetch --unshallow` (in a workflow: `fetch-depth: 0`)"
 

@@ -9,8 +9,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from pathlib import Path
 
-from archgen.git.git_call import GitResult, run_git
-from archgen.git.git_errors import GitError
+from archgen.git.git_call import GitError, GitResult, run_git
 from archgen.git.merged_trees import MergeFolder, PathConflict
 from archgen.git.repository_lookup import GitRepository, resolve_revision
 
@@ -87,3 +86,9 @@ def _run(repository: GitRepository, *words: str, stdin: bytes = b"") -> GitResul
         msg = f"git does not merge here: {' '.join(reasons[:2]) or f'`git {words[0]}` fails'}"
         raise GitError(msg)
     return result
+
+
+def ignores_file(folder: Path, name: str) -> bool:
+    """Whether git ignores a file that is in a folder. It does not where it keeps the file, and outside of a repository."""
+    # Not `check-ignore`, which refuses to take names literally.
+    return bool(run_git(folder, "ls-files", "--others", "--ignored", "--exclude-standard", "--", name).output)

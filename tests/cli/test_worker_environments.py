@@ -11,7 +11,7 @@ from typing import Any
 import pytest
 
 from archgen import resources
-from archgen.history import workers
+from archgen.history import history_counting
 from tests import repositories
 from tests.cli.conftest import Run
 
@@ -54,7 +54,7 @@ def test_workers_see_what_they_need_and_nothing_else(
         repositories.commit(folder, {"archgen.yaml": PROJECT + f"# {number}\n"})
     monkeypatch.setenv("SECRET_THING", "hunter2")
     monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "cache"))
-    monkeypatch.setattr(workers, "_COMMITS_PER_PROCESS", 1)
+    monkeypatch.setattr(history_counting, "_COMMITS_PER_PROCESS", 1)
     monkeypatch.setattr(os, "cpu_count", lambda: 2)
     assert run("build", folder, "--only", "diagrams,wiki").status == 0
     assert run("stats", folder, "--history").status == 0
