@@ -21,8 +21,7 @@ def find_asked_files(paths: tuple[Path, ...], project: Path | None) -> tuple[Pat
     if project is not None:
         other_paths = [path for path in paths if not os.path.isfile(path)]  # noqa: PTH113 - Path.is_file may raise
         if other_paths:
-            msg = f"the project is named twice: {other_paths[0]} and -C {project}"
-            raise click.UsageError(msg)
+            raise click.UsageError(f"the project is named twice: {other_paths[0]} and -C {project}")
         return project, paths
     from archgen.project.project_search import PROJECT_FILE, find_project_of_slice
 
@@ -31,8 +30,7 @@ def find_asked_files(paths: tuple[Path, ...], project: Path | None) -> tuple[Pat
         return folder or paths[0], paths if folder else ()
     folders = [path.resolve().parent if path.name == PROJECT_FILE else find_project_of_slice(path) for path in paths]
     if folders[0] is None or any(folder != folders[0] for folder in folders):
-        msg = f"these are not files of one project: {', '.join(map(str, paths))}"
-        raise click.UsageError(msg)
+        raise click.UsageError(f"these are not files of one project: {', '.join(map(str, paths))}")
     return folders[0], paths
 
 

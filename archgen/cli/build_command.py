@@ -65,8 +65,7 @@ def command(  # noqa: PLR0913 - one for each option
 
     only_names = tuple(name.strip() for names in only for name in names.split(",") if name.strip())
     if only and not only_names:
-        msg = "--only takes the names of outputs, separated by commas"
-        raise click.UsageError(msg)
+        raise click.UsageError("--only takes the names of outputs, separated by commas")
     checked_project = command_support.check_before_writing(project, keep_going=keep_going)
     trusted_revision = command_support.find_trusted_revision(project, trust)
     output_options = replace(

@@ -233,8 +233,7 @@ def _apply_fixes(checked_project: CheckedProject, names: frozenset[str]) -> Chec
 def _refuse_wrong_use(told_options: Mapping[str, bool], *, form: str, baseline: Path | None) -> None:
     told = [name for name, is_given in told_options.items() if is_given]
     if told and form != "text":
-        msg = f"{told[0]} is for people: no --format"
-        raise click.UsageError(msg)
+        raise click.UsageError(f"{told[0]} is for people: no --format")
     if baseline is not None and not os.path.lexists(baseline):
         msg = f"there is no baseline {baseline}: `archgen check --update-baseline --baseline {baseline}` writes one"
         raise click.UsageError(msg)

@@ -210,8 +210,7 @@ def read_input(path: Path, max_bytes: int) -> bytes:
         with path.open("rb") as stream:
             return stream.read(max_bytes + 1)
     except OSError as error:
-        msg = f"cannot read {path}: {error.strerror or error}"
-        raise click.ClickException(msg) from None
+        raise click.ClickException(f"cannot read {path}: {error.strerror or error}") from None
 
 
 def summarise_counts(findings: Sequence[Diagnostic]) -> str:
@@ -240,8 +239,7 @@ def choose_format(
     if ending not in formats:
         *others, last = formats
         advice = f"{', '.join(others)} or {last}, or give --format" if others else last
-        msg = f"the ending of `{output}` names no format: end it in {advice}"
-        raise click.UsageError(make_visible(msg))
+        raise click.UsageError(make_visible(f"the ending of `{output}` names no format: end it in {advice}"))
     return formats[ending]
 
 
@@ -352,8 +350,7 @@ def split_words(words: Iterable[str], joint: str, what: str, example: str) -> di
     for word in words:
         name, found, value = word.partition(joint)
         if not name or not found:
-            msg = f"`{word}` is no {what}: write `{example}`"
-            raise click.UsageError(make_visible(msg))
+            raise click.UsageError(make_visible(f"`{word}` is no {what}: write `{example}`"))
         pairs[name] = value
     return pairs
 

@@ -101,14 +101,11 @@ def command(  # noqa: PLR0913, PLR0917 - one for each option
         return
     _refuse_existing_project(target)
     if tables and groups:
-        msg = "--from takes the groups from the table: leave out --group"
-        raise click.UsageError(msg)
+        raise click.UsageError("--from takes the groups from the table: leave out --group")
     if tables and empty:
-        msg = "--from begins with what the table says: leave out --empty"
-        raise click.UsageError(msg)
+        raise click.UsageError("--from begins with what the table says: leave out --empty")
     if headings and not tables:
-        msg = "--map says what the headings of a table mean: it needs --from"
-        raise click.UsageError(msg)
+        raise click.UsageError("--map says what the headings of a table mean: it needs --from")
     heading_map = _parse_headings(headings)
     answers = _gather_answers(
         target,
@@ -201,8 +198,7 @@ def _refuse_existing_project(target: Path) -> None:
     from archgen.project import PROJECT_FILE
 
     if _has_project(target):
-        msg = f"{target / PROJECT_FILE} is there already; nothing was written"
-        raise click.ClickException(msg)
+        raise click.ClickException(f"{target / PROJECT_FILE} is there already; nothing was written")
 
 
 def _gather_answers(target: Path, **flags: Any) -> StartAnswers:  # noqa: ANN401 - as `gathered` takes them

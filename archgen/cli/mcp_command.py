@@ -39,8 +39,7 @@ def command(project: Path | None, *, allow_writes: bool) -> None:
     read outside of it, and nothing written without --allow-writes.
     """
     if importlib.util.find_spec("mcp") is None:
-        msg = 'archgen mcp needs mcp: pip install "archgen[mcp]"'
-        raise click.UsageError(msg)
+        raise click.UsageError('archgen mcp needs mcp: pip install "archgen[mcp]"')
     make_server(project, allow_writes=allow_writes).run("stdio")
 
 

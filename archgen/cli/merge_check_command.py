@@ -37,8 +37,7 @@ def command(main_line: str, branches: tuple[str, ...], form: str, *, strict: boo
 
     folders = _list_folders(project, (main_line, *branches))
     if form == "json" and folders:
-        msg = f"this folder only holds projects: name one with -C, such as `-C {folders[0]}`"
-        raise click.UsageError(msg)
+        raise click.UsageError(f"this folder only holds projects: name one with -C, such as `-C {folders[0]}`")
     paths = [(project or Path()) / folder for folder in folders] if folders else [project]
     with command_support.explain_wrong_usage(GitError, ProjectNotFoundError):
         merges_by_project = [list(preview_merges(path, main_line, branches, BRANCH_JUDGES)) for path in paths]

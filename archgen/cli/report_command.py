@@ -75,8 +75,7 @@ def command(  # noqa: PLR0913 - one for each option
         msg = "the workbook is an .xlsx, and of the other documents there is none: `--document workbook` goes with `--format xlsx` alone"
         raise click.UsageError(msg)
     if template is not None and form == "xlsx":
-        msg = "a workbook takes no template: `--template` goes with docx and pdf"
-        raise click.UsageError(msg)
+        raise click.UsageError("a workbook takes no template: `--template` goes with docx and pdf")
     checked_project = command_support.check_before_writing(project, keep_going=keep_going)
     output_options = replace(
         command_support.make_drawing_options(checked_project, select, level, revision),

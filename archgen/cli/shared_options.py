@@ -65,8 +65,7 @@ def split_variants(text: str | None) -> tuple[str, ...]:
 def _keep_variants(context: click.Context, _parameter: click.Parameter, text: str | None) -> None:
     names = split_variants(text)
     if text is not None and not names:
-        msg = "`--variant` takes the ids of variants, such as `simulation`"
-        raise click.UsageError(msg)
+        raise click.UsageError("`--variant` takes the ids of variants, such as `simulation`")
     context.meta[VARIANT_KEY] = names
 
 
@@ -164,8 +163,7 @@ def backend_argument(makes: str, *, required: bool = True) -> Callable[[CommandF
 def refuse_missing_backend(makes: str, advice: str = "") -> NoReturn:
     """Say which backends there are, since nobody names one."""
     names = ", ".join(sorted(_list_backend_ids(makes)))
-    msg = f"name what to make: {names}; `archgen list --of backends` says what each is{advice}"
-    raise click.UsageError(msg)
+    raise click.UsageError(f"name what to make: {names}; `archgen list --of backends` says what each is{advice}")
 
 
 def complete_products(_context: click.Context, _parameter: click.Parameter, incomplete: str) -> list[str]:

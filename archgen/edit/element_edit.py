@@ -215,12 +215,10 @@ def parse_text(file: str, text: str) -> ParsedText:
     """Return a text that can be edited by its places. Raise CannotInsertError."""
     document, _ = yaml_parser.parse_yaml(file, text)
     if document is None:
-        msg = f"{file} cannot be parsed: `archgen check` says where"
-        raise CannotInsertError(msg)
+        raise CannotInsertError(f"{file} cannot be parsed: `archgen check` says where")
     # YAML takes a lone carriage return for a line break and editors mostly do not: line numbers would not fit.
     if re.search(r"\r(?!\n)", text):
-        msg = f"{file} holds line breaks that editors and parsers see differently"
-        raise CannotInsertError(msg)
+        raise CannotInsertError(f"{file} holds line breaks that editors and parsers see differently")
     lines = tuple(_LINE_PATTERN.findall(text))
     return ParsedText(lines, document.root, tuple(accumulate(map(len, lines), initial=0)))
 
@@ -234,8 +232,7 @@ def find_holder(parsed: ParsedText, path: tuple[str, ...]) -> tuple[MappingNode,
             return table, path[depth:]
         # An insertion would appear wherever the anchor is used.
         if parsed.text_from(entry.value).startswith("*"):
-            msg = f"`{key}` is written once and used here by its anchor ({entry.value.span})"
-            raise CannotInsertError(msg)
+            raise CannotInsertError(f"`{key}` is written once and used here by its anchor ({entry.value.span})")
         table = entry.value
     return table, ()
 
@@ -251,8 +248,7 @@ def _insert_below_empty(
         or not _EMPTY_VALUE.match(line[entry.key_span.end_column - 1 :])
         or parsed.text_from(holder).startswith("{")
     ):
-        msg = f"`{entry.key}` is not a mapping that is written out ({entry.key_span})"
-        raise CannotInsertError(msg)
+        raise CannotInsertError(f"`{entry.key}` is not a mapping that is written out ({entry.key_span})")
     indent_width = _indent_width(parsed.root)
     indent = " " * (entry.key_span.column - 1 + indent_width)
     yield _join_lines(

@@ -106,8 +106,7 @@ def read_request_comments(text: str) -> tuple[RequestComment, ...]:
         comments = None
     # A number becomes a part of an address.
     if comments is None or any([*map(type, comment)] != [int, str, bool] for comment in comments):
-        msg = "these are no comments that `archgen check-requests -o` wrote"
-        raise ForgeError(msg)
+        raise ForgeError("these are no comments that `archgen check-requests -o` wrote")
     return comments
 
 

@@ -56,8 +56,7 @@ def find_object_ids(repository: GitRepository, names: Iterable[str]) -> tuple[st
     result = run_git(repository.top, "cat-file", "--batch-check=%(objectname)", stdin=lines)
     answers = result.text.splitlines()
     if len(answers) != len(safe_names):
-        msg = "the history cannot be read: the repository is damaged (`git fsck` says where)"
-        raise GitError(msg)
+        raise GitError("the history cannot be read: the repository is damaged (`git fsck` says where)")
     return tuple("" if line.endswith((" missing", " ambiguous")) else line for line in answers)
 
 

@@ -109,8 +109,7 @@ def read_git_output(folder: Path, *arguments: str, max_bytes: int) -> bytes | No
             output = process.stdout.read(max_bytes + 1) if process.stdout else b""
             if len(output) > max_bytes:
                 process.kill()
-                msg = f"git prints more than {max_bytes:,} bytes"
-                raise GitOutputError(msg)
+                raise GitOutputError(f"git prints more than {max_bytes:,} bytes")
         finally:
             alarm.cancel()
     return None if process.returncode else output

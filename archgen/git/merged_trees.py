@@ -89,8 +89,7 @@ class MergeFolder:
     def _run_checked(self, *words: str, stdin: bytes = b"") -> GitResult:
         result = self._run(*words, stdin=stdin)
         if result.status:
-            msg = f"git cannot merge here: {result.error_text}"
-            raise GitError(msg)
+            raise GitError(f"git cannot merge here: {result.error_text}")
         return result
 
 
@@ -122,8 +121,7 @@ def open_merge_folder(repository: GitRepository) -> Iterator[MergeFolder]:
     """Make a repository that borrows all objects of another one; it is gone afterwards. Raise GitError."""
     paths = run_git(repository.top, "rev-parse", "--git-path", "objects", "--show-object-format")
     if paths.status:
-        msg = f"the repository cannot be read: {paths.error_text}"
-        raise GitError(msg)
+        raise GitError(f"the repository cannot be read: {paths.error_text}")
     objects, object_format = paths.text.splitlines()
     with tempfile.TemporaryDirectory(prefix="archgen-") as name:
         # Called as the real one: a project without an id takes the folder's name.
@@ -174,6 +172,5 @@ def merge_lines(
             folder, "merge-file", "-p", *style, f"--marker-size={marker_size}", *labels, "ours", "base", "theirs"
         )
     if result.status > _MAX_CONFLICTS or result.status < 0:
-        msg = f"git cannot merge these texts: {result.error_text}"
-        raise GitError(msg)
+        raise GitError(f"git cannot merge these texts: {result.error_text}")
     return LineMerge(result.output, result.status)

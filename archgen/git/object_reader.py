@@ -62,8 +62,7 @@ class GitObjects:
         except GitOutputError:
             place = f"below `{prefix}` " if prefix else ""
             msg = f"the commit {commit[:10]} holds more files {place}than a project may have: their list is longer than"
-            msg = f"{msg} {MAX_LIST_BYTES // 1_000_000} MB"
-            raise GitError(msg) from None
+            raise GitError(f"{msg} {MAX_LIST_BYTES // 1_000_000} MB") from None
         if output is None:
             if self._has_folder(commit, prefix):
                 msg = f"the commit {commit[:10]} cannot be read: the repository is damaged (`git fsck` says where)"

@@ -98,11 +98,9 @@ def resolve_revision(repository: GitRepository, revision: str) -> str:
         msg = "nothing was committed in this repository yet: commit once, then there is something to compare with"
         raise NoCommitsError(msg)
     if repository.is_shallow:
-        msg = f"there is no revision `{revision}` in this shallow clone: {UNSHALLOW_HINT}"
-        raise ShallowError(msg)
+        raise ShallowError(f"there is no revision `{revision}` in this shallow clone: {UNSHALLOW_HINT}")
     suggestion = did_you_mean(revision, known_names) or "branches, tags and hashes are revisions"
-    msg = f"there is no revision `{revision}`: {suggestion}"
-    raise UnknownRevisionError(msg)
+    raise UnknownRevisionError(f"there is no revision `{revision}`: {suggestion}")
 
 
 def look_up_commit(repository: GitRepository, revision: str) -> str:

@@ -289,8 +289,7 @@ Shape = TypeVar("Shape", Box, Arrow, Cluster, Graph, Lifeline, SequenceMessage, 
 def graph_from_plain(data: object) -> Graph:
     """Return the graph that `shape_to_plain` made plain data of. Raise TypeError for anything else."""
     if not isinstance(data, Mapping) or data.get("shape") != "graph":
-        msg = "`mermaid_graph` takes one of `graphs`"
-        raise TypeError(msg)
+        raise TypeError("`mermaid_graph` takes one of `graphs`")
     parts: dict[str, Any] = {
         "boxes": tuple(_from_plain(Box, box) for box in data["boxes"]),
         "arrows": tuple(_from_plain(Arrow, arrow) for arrow in data["arrows"]),
@@ -302,8 +301,7 @@ def graph_from_plain(data: object) -> Graph:
 def sequence_from_plain(data: object) -> SequenceChart:
     """Return the sequence that `shape_to_plain` made plain data of. Raise TypeError for anything else."""
     if not isinstance(data, Mapping) or data.get("shape") != "sequencechart":
-        msg = "`mermaid_sequence` takes one of `sequences`"
-        raise TypeError(msg)
+        raise TypeError("`mermaid_sequence` takes one of `sequences`")
     parts: dict[str, Any] = {
         "lifelines": tuple(_from_plain(Lifeline, lifeline) for lifeline in data["lifelines"]),
         "messages": tuple(_from_plain(SequenceMessage, message) for message in data["messages"]),
