@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, NoReturn
 
 import click
 
-from archgen.cli import asked_files, command_support, finding_documents, shared_options
+from archgen.cli import command_support, finding_documents, shared_options
 from archgen.diagnostics import Diagnostic, Severity, make_visible
 from archgen.frozen import replace
 
@@ -86,7 +86,7 @@ def command(  # noqa: PLR0913 - one for each option
     2 for wrong usage. A project with variants is checked in each of them; a finding that does not hold in all of them says
     in which. --update-baseline writes the --baseline, or archgen-baseline.yaml in the project.
     """
-    project, files = asked_files.find_asked_files(paths, project)
+    project, files = command_support.find_asked_files(paths, project)
     if update_baseline:
         _refuse_partial_baseline(
             {"--format": form != "text", "--changed-since": changed_since, "--variant": variant, "--select": select}
@@ -193,7 +193,7 @@ def _check_asked(
     A single one that the project does not read is a project by itself.
     """
     checked_project = command_support.check_or_exit(project, version_cache)
-    names = asked_files.name_files(checked_project, files)
+    names = command_support.name_files(checked_project, files)
     known_files = {*checked_project.sources.file_names(), *checked_project.loaded_project.broken_files}
     for name in sorted(names.keys() - known_files):
         command_support.print_warning(

@@ -7,8 +7,8 @@ from typing import NamedTuple
 from archgen.plugin.importing import MAX_ID_LENGTH, make_id, make_unique_id
 from archgen.plugins.tables import cell_values, declaration_rows, port_lists
 from archgen.plugins.tables.imported_project import UNSORTED, ImportedComponent, ImportedInput, ImportedProject
-from archgen.plugins.tables.row_records import TableRecord
 from archgen.plugins.tables.table_cells import TableCell
+from archgen.plugins.tables.table_records import TableRecord
 
 
 class ConnectionEnd(NamedTuple):

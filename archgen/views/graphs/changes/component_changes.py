@@ -16,10 +16,11 @@ from archgen.views.changes.change_wording import BREAK_SIGN, CHANGE_SIGNS
 from archgen.views.changes.named_elements import name_each, name_partners
 from archgen.views.elements import element_names
 from archgen.views.graphs import element_boxes
-from archgen.views.graphs.changes.change_arrows import ConnectionLine, bundle_arrows
 from archgen.views.graphs.changes.merged_versions import (
     ChangeNotes,
+    ConnectionLine,
     MergedEdge,
+    bundle_arrows,
     collect_change_notes,
     describe_changed_flows,
     merged_edges,
