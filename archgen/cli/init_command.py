@@ -362,8 +362,6 @@ def _ask_groups(default: tuple[GroupAnswer, ...], partners: tuple[PartnerAnswer,
 
 
 def _ask_until(question: str, default: str, read_answer: Callable[[str], T]) -> T:
-    """Ask until the answer can be parsed."""
-
     def parse_answer(words: str) -> T:
         try:
             return read_answer(words)

@@ -194,7 +194,6 @@ def _explain_no_interfaces(checked_project: CheckedProject, first: str, second: 
 
 
 def _error_notices(checked_project: CheckedProject, earlier_version: ProjectVersion | None) -> Iterator[Paragraph]:
-    """Yield a notice for each version that has errors."""
     for version_suffix, noticed_project in (
         ("", checked_project),
         *(((f" at {earlier_version.title}", earlier_version.checked_project),) if earlier_version else ()),

@@ -103,7 +103,6 @@ def _write_list(writer: DocxWriter, contents: ContentsList, pages: Mapping[str, 
 
 
 def _write_entry(writer: DocxWriter, runs: str, text: str, style: str, sheet: PaperSheet) -> FlowPiece:
-    """Write the paragraph of an entry."""
     face = writer.styles.find_face(style)
     width = sheet.column_width
     tabs = f'<w:tabs><w:tab w:val="right" w:leader="dot" w:pos="{points_to_twips(width)}"/></w:tabs>'

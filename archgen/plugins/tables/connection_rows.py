@@ -85,7 +85,6 @@ def _take_ends(
 def _report_open_input(
     project: ImportedProject, row: TableRecord, source: ConnectionEnd | None, target: ConnectionEnd | None
 ) -> None:
-    """Report a connection without a source."""
     if source is None and target is not None:
         message = f"nothing says where this comes from: the input of `{target.component.name}` has no source yet"
         project.add_warning("missing-key", message, row.first_cell.span, "fill in the component that gives it")

@@ -229,8 +229,6 @@ def read_features(
 
 
 class _FeatureReader:
-    """Reads the features of one class."""
-
     def __init__(self, ledger: ImportLedger, port_names: Collection[str]) -> None:
         self.features = ClassFeatures()
         self._index, self._ledger, self._port_names = ledger.index, ledger, port_names

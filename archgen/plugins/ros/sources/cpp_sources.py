@@ -238,10 +238,9 @@ class _Reader:
                 for each in self._read_declaration(child, depth)
             ]
             asked = self._read(condition, depth) if condition is not None else None
-            body, other = (
-                self._read_block(node.child_by_field_name(name), depth) for name in ("consequence", "alternative")
-            )
-            return [*initial, Statement("branch", asked, (), body, other)]
+            consequence = self._read_block(node.child_by_field_name("consequence"), depth)
+            alternative = self._read_block(node.child_by_field_name("alternative"), depth)
+            return [*initial, Statement("branch", asked, (), consequence, alternative)]
         if kind == "for_range_loop":
             right, body = node.child_by_field_name("right"), node.child_by_field_name("body")
             name = _find_name(node.child_by_field_name("declarator"))

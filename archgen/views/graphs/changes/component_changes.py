@@ -153,7 +153,6 @@ def _component_exists(overlay: _OverlaidComponents, name: str) -> bool:
 
 
 def _old_component_id(overlay: _OverlaidComponents, name: str) -> str | None:
-    """Return the old id of a component, None if it is new."""
     old_id = overlay.comparison.matched_ids.old_ids.get("component", {}).get(name, name)
     return old_id if old_id in overlay.old_lookup.architecture.components else None
 
