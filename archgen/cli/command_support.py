@@ -150,9 +150,9 @@ def report_selector_problems(problems: Iterable[SelectorProblem]) -> None:
         raise click.UsageError("\n".join(errors))
 
 
-def exit_by_findings(checked_project: CheckedProject, *, strict: bool = False) -> NoReturn:
+def exit_by_findings(checked_project: CheckedProject) -> NoReturn:
     """End with the status that the findings ask for."""
-    sys.exit(exit_status(checked_project.findings, strict=strict))
+    sys.exit(exit_status(checked_project.findings))
 
 
 @contextmanager
