@@ -1,4 +1,9 @@
-"""Count a project at every commit: cached counts are used, the rest is counted in several processes."""
+"""Count a project at every commit: cached counts are used, the rest is counted in several processes.
+
+Commits that say the same, without places and comments, count the same. A digest of the files decides that, not the
+comparison's normal form: it decides which commits need no reading and checking at all, so it must be had before there is an
+architecture. It may only err towards "changed", which costs one more check.
+"""
 
 from __future__ import annotations
 

@@ -2,6 +2,9 @@
 
 Comment, findings and outputs are all of these files: a comment about HEAD beside findings of an edited work tree would
 contradict them.
+
+What a change of code makes differ from the model is asked of the workspace that the project names, before the change and after
+it. That of before is read from git's objects: its files are written into a temporary folder, and nothing is checked out.
 """
 
 from __future__ import annotations

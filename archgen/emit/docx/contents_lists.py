@@ -1,4 +1,4 @@
-"""The tables of contents, figures and tables: every entry a link with the number of its page.
+"""The title page, and the tables of contents, figures and tables: every entry a link with the number of its page.
 
 Word gets a real field around them, which somebody can update. LibreOffice keeps what such a field holds as it is, wrong numbers too, while it
 computes the page of an entry that stands outside of one. So the outer field is written for those alone who know Word 2016's additions.

@@ -1,4 +1,9 @@
-"""What the writers of all pieces share: the document, its styles and paper, ids that are used, headings and captions so far."""
+"""What the writers of all pieces share: the document, its styles and paper, ids that are used, headings and captions so far.
+
+The finished file is python-docx's parts as a zip that is the same bytes each time. `Package.save` stamps each file of the
+zip with the time of day, and deflates pictures that are deflated already: 0.76 s for the 13 MB of example_ramcip, where this
+takes 0.19 s and the whole report 1.2 s.
+"""
 
 from __future__ import annotations
 

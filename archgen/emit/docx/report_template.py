@@ -2,6 +2,9 @@
 
 What stands in a partner's template comes before the report as its cover, up to a paragraph `{{report}}` if there is one; what
 stands behind that paragraph closes the document.
+
+A template is mended so that python-docx opens what Word opens: it refuses .dotx files, and raises KeyError for a part without a
+content type.
 """
 
 from __future__ import annotations

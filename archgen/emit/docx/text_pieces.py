@@ -1,4 +1,4 @@
-"""Headings, paragraphs and lists, as pieces of the report's flow."""
+"""Headings, paragraphs, lists and bars, as pieces of the report's flow."""
 
 from __future__ import annotations
 

@@ -2,6 +2,24 @@
 
 Ids of the model never get into DOT text: boxes are `n0`, `n1`, arrows `e0`, `e1`, in the graph's order. So no id can
 break the syntax, and a layout does not depend on what things are called.
+
+Arrows say by their style what they are:
+
+| style | line |
+|---|---|
+| data | solid, filled head; optional input: hollow head |
+| physical | double line |
+| service | dashed, open head, from client to server |
+| action | bold, double head, from client to server |
+| internal | dotted |
+| made by autoconnect | dotted, with the head of what runs along it |
+| link | thick, without head |
+| no ROS | a square behind the head |
+
+Where two versions are drawn: what is added is thick, what is removed dashed, what changed a double line, what breaks
+another partner heavy and red.
+
+An arrow that stands for several flows is wider: 1, 2 to 3, 4 and more flows are 1, 2 and 3.2 points.
 """
 
 from __future__ import annotations

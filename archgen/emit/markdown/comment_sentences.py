@@ -1,4 +1,9 @@
-"""Sentences of ours in a comment, with names from the project in them: shortened, visible, and inert."""
+"""Sentences of ours in a comment, with names from the project in them: shortened, visible, and inert.
+
+GitHub and GitLab turn what they find in rendered text into mentions, references, links and emoji. An escape or a comment
+before the sign does not help, since they look after Markdown is rendered. A zero-width space behind the sign does; in a code
+span they do not look.
+"""
 
 from __future__ import annotations
 

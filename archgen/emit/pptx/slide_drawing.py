@@ -1,4 +1,4 @@
-"""Slides as python-pptx makes them: titles in their placeholders, text and tables that people edit, pictures."""
+"""A presentation, its template, and slides as python-pptx makes them: titles in their placeholders, text and tables that people edit, pictures."""
 
 from __future__ import annotations
 

@@ -1,6 +1,9 @@
 """The filters of templates: they put text safely where it is needed, be it Markdown, code span, Mermaid or identifier.
 
 The names in `TEMPLATE_FILTERS` are part of docs/backends.md.
+
+Of those that write code whatever a text says stays inside of what the filter makes of it: a string, a comment, a word or an
+identifier of a language. The names in `CODE_FILTERS` are part of docs/own_generators.md.
 """
 
 from __future__ import annotations

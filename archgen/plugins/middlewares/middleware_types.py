@@ -347,6 +347,7 @@ ALIASES = {
 """What UML and programming languages call such values."""
 
 
+# From libplayerinterface/interfaces/*.def of Player 3.1; where there are several, the first counts.
 _INTERFACES: Mapping[str, tuple[str, str]] = {
     "actarray": ("STATE actarray_data", "POS actarray_position_cmd"),
     "aio": ("STATE aio_data", "STATE aio_cmd"),
