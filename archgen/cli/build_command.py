@@ -32,11 +32,7 @@ if TYPE_CHECKING:
     help="Make only these: `report`, `site`, `diagrams`, `packed` or backends, separated by commas.",
     shell_complete=shared_options.complete_products,
 )
-@click.option(
-    "--template",
-    type=click.Path(exists=True, dir_okay=False, path_type=Path),
-    help="A .docx or .dotx for the report.",
-)
+@shared_options.template_option("A .docx or .dotx for the report.")
 @shared_options.select_option
 @shared_options.level_option
 @shared_options.revision_option

@@ -28,13 +28,7 @@ _MAX_CURED_LINES = 20
 @click.command("check")
 @click.argument("paths", metavar="[PROJECT | FILE...]", nargs=-1, type=click.Path(path_type=Path))
 @shared_options.project_option
-@click.option(
-    "--format",
-    "form",
-    type=click.Choice(["text", *finding_documents.DOCUMENT_FORMATS]),
-    default="text",
-    show_default=True,
-)
+@shared_options.format_option("text", *finding_documents.DOCUMENT_FORMATS)
 @click.option(
     "--variant",
     metavar="NAMES",

@@ -63,13 +63,7 @@ _MAX_UNREAD = 10
 @click.option(
     "--env", "variables", metavar="NAME=VALUE", multiple=True, help="A variable of the environment of launch files."
 )
-@click.option(
-    "--format",
-    "form",
-    type=click.Choice(["text", *finding_documents.DOCUMENT_FORMATS]),
-    default="text",
-    show_default=True,
-)
+@shared_options.format_option("text", *finding_documents.DOCUMENT_FORMATS)
 @shared_options.strict_option
 @click.option(
     "--baseline",

@@ -7,6 +7,7 @@ import sys
 
 import click
 
+from archgen.cli import shared_options
 from archgen.diagnostics import did_you_mean, name_rule
 from archgen.diagnostics.text_columns import align_rows, find_width
 
@@ -16,7 +17,7 @@ from archgen.diagnostics.text_columns import align_rows, find_width
 @click.option(
     "--distro", metavar="NAME", help="With `ros.TYPE`: the file and the line of each fact, for a distribution of ROS."
 )
-@click.option("--format", "form", type=click.Choice(["text", "json"]), default="text", show_default=True)
+@shared_options.format_option("text", "json")
 def command(rule: str | None, distro: str | None, form: str) -> None:
     """Explain RULE: why it is there, a bad and a good example. Without RULE, list all rules.
 

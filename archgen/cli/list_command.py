@@ -43,7 +43,7 @@ _SELECTED_KINDS = frozenset(
     metavar="ID",
     help="With `--of component_types`: only those of this library; `builtin` are those that ship with archgen.",
 )
-@click.option("--format", "form", type=click.Choice(["text", "csv", "json"]), default="text", show_default=True)
+@shared_options.format_option("text", "csv", "json")
 @shared_options.project_option
 @shared_options.variant_option
 def command(  # noqa: PLR0913 - one for each option

@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 @click.command("merge-check")
 @click.argument("main_line", metavar="MAIN")
 @click.argument("branches", metavar="OTHER...", nargs=-1, required=True)
-@click.option("--format", "form", type=click.Choice(["text", "json"]), default="text", show_default=True)
+@shared_options.format_option("text", "json")
 @shared_options.strict_option
 @shared_options.project_option
 def command(main_line: str, branches: tuple[str, ...], form: str, *, strict: bool, project: Path | None) -> None:

@@ -28,11 +28,7 @@ _FORMAT_BY_ENDING = {".docx": "docx", ".pdf": "pdf", ".xlsx": "xlsx"}
     type=click.Choice(["docx", "pdf", "xlsx"]),
     help="The format, where the file's ending does not say it.  [default: docx]",
 )
-@click.option(
-    "--template",
-    type=click.Path(exists=True, dir_okay=False, path_type=Path),
-    help="A .docx or .dotx whose styles, cover, headers, footers and paper size are taken.",
-)
+@shared_options.template_option("A .docx or .dotx whose styles, cover, headers, footers and paper size are taken.")
 @click.option(
     "--document",
     type=click.Choice(["deliverable", "data-sheets", "workbook", "full"]),

@@ -192,9 +192,18 @@ def partner_option(help_text: str, *, required: bool = False) -> Callable[[Comma
     return click.option("--partner", metavar="ID", required=required, shell_complete=_complete_partners, help=help_text)
 
 
-document_format_option = click.option(
-    "--format", "form", type=click.Choice(["text", "markdown", "json"]), default="text", show_default=True
-)
+def format_option(*formats: str) -> Callable[[CommandFunction], CommandFunction]:
+    """Make the option of a verb that says the same in several formats; the first is the default."""
+    return click.option("--format", "form", type=click.Choice(formats), default=formats[0], show_default=True)
+
+
+document_format_option = format_option("text", "markdown", "json")
+
+
+def template_option(help_text: str) -> Callable[[CommandFunction], CommandFunction]:
+    """Make the option of a verb that writes into a document of the user's."""
+    path_type = click.Path(exists=True, dir_okay=False, path_type=Path)
+    return click.option("--template", type=path_type, help=help_text)
 
 
 def file_option(help_text: str) -> Callable[[CommandFunction], CommandFunction]:

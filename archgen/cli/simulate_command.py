@@ -34,7 +34,7 @@ if TYPE_CHECKING:
     type=click.Path(path_type=Path, dir_okay=False),
     help="With one --chain: write the run in which it was latest, for ui.perfetto.dev.",
 )
-@click.option("--format", "form", type=click.Choice(["text", "json"]), default="text", show_default=True)
+@shared_options.format_option("text", "json")
 def command(  # noqa: PLR0913, PLR0917 - one for each option
     project: Path | None,
     seconds: int,

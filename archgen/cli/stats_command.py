@@ -30,7 +30,7 @@ _NARROW = 100
 @click.option(
     "--select", metavar="WORDS", help="Count only the selected components: `owner:certh`, `sensing`, `tag:safety -x`."
 )
-@click.option("--format", "form", type=click.Choice(["text", "json", "csv"]), default="text", show_default=True)
+@shared_options.format_option("text", "json", "csv")
 @click.option("--history", is_flag=True, help="Show how size, progress and findings grew, from git's history.")
 @click.option(
     "--by",

@@ -20,7 +20,7 @@ ANY_PROPOSAL = "any"
 @click.command("timing")
 @shared_options.project_argument
 @shared_options.variant_option
-@click.option("--format", "form", type=click.Choice(["text", "json"]), default="text", show_default=True)
+@shared_options.format_option("text", "json")
 @click.option("--all", "shows_all", is_flag=True, help="Show services, elements and loops on a terminal, too.")
 @click.option("--chain", metavar="ID", help="Show a chain term by term.")
 @click.option(
