@@ -103,8 +103,7 @@ class ProjectTools:
 
         with self._lock, _explain(EditRefusedError, ProjectNotFoundError):
             if any({*edit} != {"file", "old", "new"} for edit in edits):
-                message = 'each edit has "file", "old" and "new"'
-                raise EditRefusedError(message)
+                raise EditRefusedError('each edit has "file", "old" and "new"')
             checked_project = pipeline.check_project(self._project)
             proposal = judge_proposal(checked_project, [TextChange(**edit) for edit in edits])
             self._last_number += 1
@@ -131,8 +130,7 @@ class ProjectTools:
         with self._lock, _explain(EditRefusedError, OutputError, OSError):
             known = self._proposals.get(proposal)
             if known is None:
-                message = f"there is no proposal {proposal}, or it was made long ago: propose it again"
-                raise EditRefusedError(message)
+                raise EditRefusedError(f"there is no proposal {proposal}, or it was made long ago: propose it again")
             errors = [each for each in known.new_findings if each.severity is Severity.ERROR]
             if errors:
                 message = f"it would bring {len(errors)} errors, the first: {errors[0].message}"

@@ -93,17 +93,14 @@ def read_editable(checked_project: CheckedProject, file: str) -> tuple[bytes, st
     """Read a file of the project again. Raise EditRefusedError, also where somebody wrote into it meanwhile."""
     data = checked_project.loaded_project.files.fetch_bytes(file)
     if isinstance(data, FileRefusal):
-        message = f"{file} cannot be read: {data.message}"
-        raise EditRefusedError(message)
+        raise EditRefusedError(f"{file} cannot be read: {data.message}")
     try:
         text = data.decode()
     except UnicodeDecodeError:
-        message = f"{file} is not UTF-8"
-        raise EditRefusedError(message) from None
+        raise EditRefusedError(f"{file} is not UTF-8") from None
     # Places are those of the text that was checked.
     if checked_project.sources.text_of(file) not in {None, text.removeprefix(BYTE_ORDER_MARK)}:
-        message = f"{file} was changed since it was read"
-        raise EditRefusedError(message, "run this again")
+        raise EditRefusedError(f"{file} was changed since it was read", "run this again")
     return data, text
 
 

@@ -82,8 +82,7 @@ def _open_document(data: bytes) -> Document:
     # What python-docx raises for files that are damaged in ways that nobody has thought of; it has no error of its own for them.
     # It walks from part to part by recursion: a chain of a thousand parts is too long.
     except (KeyError, ValueError, AttributeError, TypeError, RecursionError, etree.XMLSyntaxError) as error:
-        message = f"the template is damaged: it cannot be opened as a Word document ({error})"
-        raise TemplateError(message) from None
+        raise TemplateError(f"the template is damaged: it cannot be opened as a Word document ({error})") from None
 
 
 def _split_body(
@@ -393,5 +392,4 @@ def _check_document(parts: dict[str, bytes], main: str) -> None:
         message = 'the template is a "Strict Open XML Document": save it as an ordinary Word document (.docx)'
         raise TemplateError(message)
     if root.tag != qn("w:document") or root.find(qn("w:body")) is None:
-        message = f"the template is no Word file: its part `{main}` holds no document"
-        raise TemplateError(message)
+        raise TemplateError(f"the template is no Word file: its part `{main}` holds no document")

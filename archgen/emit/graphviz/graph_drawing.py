@@ -75,8 +75,7 @@ def lay_out_graph(
     drawn_arrows = {line.arrow for line in scene.lines}
     wanted_arrows = {arrow.id for arrow in graph.arrows}
     if wanted_arrows - drawn_arrows:
-        message = f"{len(wanted_arrows - drawn_arrows)} of {len(wanted_arrows)} arrows were lost"
-        raise layout_engine.LayoutError(message)
+        raise layout_engine.LayoutError(f"{len(wanted_arrows - drawn_arrows)} of {len(wanted_arrows)} arrows were lost")
     boxes = {styled_graph.dot_names[box.id]: box for box in graph.boxes}
     return styled_graph, add_graph_legend(add_decorations(scene, boxes), _note_lost_labels(styled_graph, scene))
 
@@ -138,8 +137,7 @@ def render_picture(
     # Only lines with an arrow id: samples in the legend have none.
     lost_edges = {line.edge for line in scene.lines if line.arrow} - {edge[1:] for edge in find_drawn_edges(text)}
     if lost_edges:
-        message = f"{len(lost_edges)} arrows were not drawn"
-        raise layout_engine.LayoutError(message)
+        raise layout_engine.LayoutError(f"{len(lost_edges)} arrows were not drawn")
     return Picture(
         drawing.id,
         right - left,

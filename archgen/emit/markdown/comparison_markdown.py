@@ -6,7 +6,7 @@ is counted, with the command that shows it. Names, titles and messages remain te
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 
 from archgen.compare.edits import Edit
 from archgen.diagnostics import Diagnostic, Severity, join_words, keep_first
@@ -84,45 +84,30 @@ class LimitedComment:
             self._add_list(f"<details><summary>{folded_summary}</summary>", folded_items, "</details>", uncounted_items)
 
     def _add_list(self, opening: str, items: Sequence[str], closing: str, uncounted_items: int) -> None:
-        # 100 characters are for "- and N more" and the blank lines in between.
-        room = (
-            self.limit
-            - self.used_size
-            - _CLOSING_RESERVE
-            - count_characters(opening)
-            - count_characters(closing)
-            - count_characters(self.command)
-            - 100
-        )
-        fitting_items = []
-        for item in items:
-            room -= count_characters(item) + 1
-            if room < 0:
-                break
-            fitting_items.append(item)
+        fitting_items = self._take_fitting(items, opening, closing)
         left_count = len(items) - len(fitting_items) + uncounted_items
         more_note = [f"- and {left_count} more: {self.command}"] if left_count > 0 else []
         self.add_block(
             "\n\n".join(part for part in (opening, "\n".join((*fitting_items, *more_note)), closing) if part)
         )
 
+    def _take_fitting(self, lines: Iterable[str], *around: str) -> list[str]:
+        """Return the first lines: those that there is room for beside what stands around them."""
+        # 100 characters are for "- and N more" and the blank lines in between.
+        taken = sum(map(count_characters, (*around, self.command))) + 100
+        room = self.limit - self.used_size - _CLOSING_RESERVE - taken
+        fitting_lines = []
+        for line in lines:
+            room -= count_characters(line) + 1
+            if room < 0:
+                break
+            fitting_lines.append(line)
+        return fitting_lines
+
     def add_table(self, heads: Sequence[str], rows: Sequence[Sequence[str]]) -> None:
         """Add a table with as many rows as fit; cells are escaped already."""
         lines = [_table_row(heads), _table_row(["---"] * len(heads))]
-        room = (
-            self.limit
-            - self.used_size
-            - _CLOSING_RESERVE
-            - count_characters("\n".join(lines))
-            - count_characters(self.command)
-            - 100
-        )
-        fitting_rows = []
-        for row in map(_table_row, rows):
-            room -= count_characters(row) + 1
-            if room < 0:
-                break
-            fitting_rows.append(row)
+        fitting_rows = self._take_fitting(map(_table_row, rows), "\n".join(lines))
         self.add_block("\n".join((*lines, *fitting_rows)))
         if len(fitting_rows) < len(rows):
             self.add_block(f"and {len(rows) - len(fitting_rows)} more: {self.command}")

@@ -407,8 +407,7 @@ def find_layout(presentation: Any, kind: str, other: Any = None) -> Any:  # noqa
     fitting = [each for each in titled if each._element.get("type") == kind]  # noqa: SLF001 - no property says it
     barest = sorted(titled, key=lambda layout: (layout == other, len(layout.placeholders)))
     if not titled:
-        message = "the template has no layout with a title: slides are made with one"
-        raise TemplateError(message)
+        raise TemplateError("the template has no layout with a title: slides are made with one")
     return (fitting or barest)[0]
 
 

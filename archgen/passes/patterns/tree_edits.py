@@ -242,8 +242,7 @@ class TreeEditor:
                 self._drop_component(key, value)
             return
         if value is not None and not isinstance(value, dict):
-            message = f"`{key}` is to be a component, and what is written of it is no mapping"
-            raise EditError(message)
+            raise EditError(f"`{key}` is to be a component, and what is written of it is no mapping")
         host = None if isinstance(value, ComponentBody) else (value or {}).get("host")
         if not is_known:
             self._add_component(key, value or {}, origin)

@@ -117,8 +117,7 @@ def decode_text(file: str, data: bytes) -> str:
         return data.decode("utf-8-sig")
     except UnicodeDecodeError as error:
         line = data.count(b"\n", 0, error.start) + 1
-        words = "it is no UTF-8"
-        raise ForeignFileError(words, Span(file, line, 1, line, 2), "save it as UTF-8") from None
+        raise ForeignFileError("it is no UTF-8", Span(file, line, 1, line, 2), "save it as UTF-8") from None
 
 
 def parse_launch_module(file: str, data: bytes) -> tuple[str, ast.Module]:
