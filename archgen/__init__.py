@@ -21,5 +21,4 @@ def __getattr__(name: str) -> object:
         from archgen import api
 
         return getattr(api, name)
-    msg = f"module 'archgen' has no attribute {name!r}"
-    raise AttributeError(msg)
+    raise AttributeError(f"module 'archgen' has no attribute {name!r}")

@@ -198,8 +198,7 @@ class Project:
         target = Path(fspath(file))
         file_format = agreement_documents.FORMAT_BY_ENDING.get(target.suffix.lower())
         if file_format is None:
-            msg = f"the ending of `{target.name}` names no format: .docx, .md, .html or .json"
-            raise ValueError(msg)
+            raise ValueError(f"the ending of `{target.name}` names no format: .docx, .md, .html or .json")
         issue_date = agreement_documents.parse_issue_date(date) if date else None
         earlier_version = (
             signed_agreements.read_agreed_version(since, self.checked, self._source_path()) if since else None

@@ -86,8 +86,7 @@ class _TupleMethods(tuple[Any, ...]):
     def _replace(self, /, **changes: Any) -> Any:  # noqa: ANN401 - the same
         made = tuple.__new__(self.__class__, map(changes.pop, self._fields, self))
         if changes:
-            message = f"{self.__class__.__name__} has no fields {[*changes]}"
-            raise TypeError(message)
+            raise TypeError(f"{self.__class__.__name__} has no fields {[*changes]}")
         return made
 
     def _asdict(self) -> dict[str, Any]:
@@ -130,8 +129,7 @@ _PLAIN_FIELD: dataclasses.Field[Any] = dataclasses.field()
 def _make_slotted(cls: type, *, frozen: bool, eq: bool) -> type:
     """Make a dataclass with slots. Methods that the class defines itself are kept."""
     if any("__dataclass_fields__" in base.__dict__ for base in cls.__mro__[1:]):
-        message = f"{cls.__name__}: a class with slots inherits no fields"
-        raise TypeError(message)
+        raise TypeError(f"{cls.__name__}: a class with slots inherits no fields")
     namespace = {name: value for name, value in cls.__dict__.items() if name not in {"__dict__", "__weakref__"}}
     fields = {
         name: _take_field(namespace, name)
@@ -224,8 +222,7 @@ def _make_init(slotted_class: type, fields: Mapping[str, dataclasses.Field[Any]]
             made_places.append(at)
     late_names = [name for name in positional if name in defaults]
     if late_names != positional[len(positional) - len(late_names) :]:
-        message = f"{slotted_class.__name__}: a field without a default follows one that has one"
-        raise TypeError(message)
+        raise TypeError(f"{slotted_class.__name__}: a field without a default follows one that has one")
     has_end = hasattr(slotted_class, "__post_init__")
     code = _compile_init(len(positional), len(given), tuple(made_places), way=way, has_end=has_end)
     init = FunctionType(
@@ -324,13 +321,11 @@ def _make_equality(
 
 
 def _refuse_assignment(self: object, name: str, value: object) -> None:  # noqa: ARG001 - Python's signature
-    message = f"cannot assign to field {name!r}"
-    raise dataclasses.FrozenInstanceError(message)
+    raise dataclasses.FrozenInstanceError(f"cannot assign to field {name!r}")
 
 
 def _refuse_deletion(self: object, name: str) -> None:  # noqa: ARG001 - the same
-    message = f"cannot delete field {name!r}"
-    raise dataclasses.FrozenInstanceError(message)
+    raise dataclasses.FrozenInstanceError(f"cannot delete field {name!r}")
 
 
 def _get_state(self: Any) -> dict[str, Any]:  # noqa: ANN401

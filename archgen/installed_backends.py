@@ -62,8 +62,7 @@ def _list_folders(parent: Path) -> Iterator[Path]:
 
 
 def _refuse_taken_id(entry: PluginEntry, backend_id: str, known: InstalledBackend) -> None:
-    msg = (
+    raise PluginRefusedError(
         f"the generator `{entry.name}` of {entry.origin} cannot be used: {known.origin or 'archgen'} has a backend "
         f"`{backend_id}` already; uninstall one, or leave out plug-ins with `archgen --no-plugins`"
     )
-    raise PluginRefusedError(msg)

@@ -89,8 +89,7 @@ def load_reader(purpose: str) -> Any:  # noqa: ANN401 - a function of the purpos
     for facts in list_shipped_plugins().values():
         if purpose in facts.get("readers", {}):
             return load_shipped_object(facts["readers"][purpose])
-    msg = f"there is no plug-in that reads {purpose}: it is taken out of {SHIPPED_PACKAGE}"
-    raise PluginRefusedError(msg)
+    raise PluginRefusedError(f"there is no plug-in that reads {purpose}: it is taken out of {SHIPPED_PACKAGE}")
 
 
 def list_entries(group: str) -> tuple[PluginEntry, ...]:
@@ -115,11 +114,10 @@ def load_facts(entry: PluginEntry) -> Facts:
         msg = f"{_name_entry(entry)} is no mapping with `api`: `{entry.target}` is of the type {type(facts).__name__}"
         raise PluginRefusedError(msg)
     if facts.get("api") != API:
-        msg = (
+        raise PluginRefusedError(
             f"{_name_entry(entry)} is written for api {facts.get('api')!r} of archgen.plugin, and this archgen has {API}: "
             "install a version of it that fits, or leave out plug-ins with `archgen --no-plugins`"
         )
-        raise PluginRefusedError(msg)
     return facts
 
 
@@ -133,11 +131,10 @@ def load_object(entry: PluginEntry, target: str) -> Any:  # noqa: ANN401 - whate
             for part in name.split("."):
                 found = getattr(found, part)
         except Exception as error:  # whatever a stranger's module raises is said in a sentence
-            msg = (
+            raise PluginRefusedError(
                 f"{_name_entry(entry)} cannot be loaded: `{target}`: {type(error).__name__}: {error}; "
                 "mend or uninstall it, or leave out plug-ins with `archgen --no-plugins`"
-            )
-            raise PluginRefusedError(msg) from error
+            ) from error
     return found
 
 

@@ -32,11 +32,7 @@ if TYPE_CHECKING:
     help="Make only these: `report`, `site`, `diagrams`, `packed` or backends, separated by commas.",
     shell_complete=shared_options.complete_products,
 )
-@click.option(
-    "--template",
-    type=click.Path(exists=True, dir_okay=False, path_type=Path),
-    help="A .docx or .dotx for the report.",
-)
+@shared_options.template_option("A .docx or .dotx for the report.")
 @shared_options.select_option
 @shared_options.level_option
 @shared_options.revision_option
@@ -65,8 +61,7 @@ def command(  # noqa: PLR0913 - one for each option
 
     only_names = tuple(name.strip() for names in only for name in names.split(",") if name.strip())
     if only and not only_names:
-        msg = "--only takes the names of outputs, separated by commas"
-        raise click.UsageError(msg)
+        raise click.UsageError("--only takes the names of outputs, separated by commas")
     checked_project = command_support.check_before_writing(project, keep_going=keep_going)
     trusted_revision = command_support.find_trusted_revision(project, trust)
     output_options = replace(

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, NoReturn
 
 import click
 
-from archgen.cli import asked_files, command_support, finding_documents, shared_options
+from archgen.cli import command_support, finding_documents, shared_options
 from archgen.diagnostics import Diagnostic, Severity, make_visible
 from archgen.frozen import replace
 
@@ -28,13 +28,7 @@ _MAX_CURED_LINES = 20
 @click.command("check")
 @click.argument("paths", metavar="[PROJECT | FILE...]", nargs=-1, type=click.Path(path_type=Path))
 @shared_options.project_option
-@click.option(
-    "--format",
-    "form",
-    type=click.Choice(["text", *finding_documents.DOCUMENT_FORMATS]),
-    default="text",
-    show_default=True,
-)
+@shared_options.format_option("text", *finding_documents.DOCUMENT_FORMATS)
 @click.option(
     "--variant",
     metavar="NAMES",
@@ -86,7 +80,7 @@ def command(  # noqa: PLR0913 - one for each option
     2 for wrong usage. A project with variants is checked in each of them; a finding that does not hold in all of them says
     in which. --update-baseline writes the --baseline, or archgen-baseline.yaml in the project.
     """
-    project, files = asked_files.find_asked_files(paths, project)
+    project, files = command_support.find_asked_files(paths, project)
     if update_baseline:
         _refuse_partial_baseline(
             {"--format": form != "text", "--changed-since": changed_since, "--variant": variant, "--select": select}
@@ -193,7 +187,7 @@ def _check_asked(
     A single one that the project does not read is a project by itself.
     """
     checked_project = command_support.check_or_exit(project, version_cache)
-    names = asked_files.name_files(checked_project, files)
+    names = command_support.name_files(checked_project, files)
     known_files = {*checked_project.sources.file_names(), *checked_project.loaded_project.broken_files}
     for name in sorted(names.keys() - known_files):
         command_support.print_warning(
@@ -233,8 +227,7 @@ def _apply_fixes(checked_project: CheckedProject, names: frozenset[str]) -> Chec
 def _refuse_wrong_use(told_options: Mapping[str, bool], *, form: str, baseline: Path | None) -> None:
     told = [name for name, is_given in told_options.items() if is_given]
     if told and form != "text":
-        msg = f"{told[0]} is for people: no --format"
-        raise click.UsageError(msg)
+        raise click.UsageError(f"{told[0]} is for people: no --format")
     if baseline is not None and not os.path.lexists(baseline):
         msg = f"there is no baseline {baseline}: `archgen check --update-baseline --baseline {baseline}` writes one"
         raise click.UsageError(msg)

@@ -27,6 +27,8 @@ from archgen.diagnostics.text_columns import find_width
 from archgen.products.output_options import OutputOptions
 
 if TYPE_CHECKING:
+    from collections.abc import Iterable
+
     from archgen.diagnostics import SourceTexts
     from archgen.edit.element_edit import FileEdit
     from archgen.edit.measured_slice import MeasuredSlice
@@ -148,9 +150,9 @@ def report_selector_problems(problems: Iterable[SelectorProblem]) -> None:
         raise click.UsageError("\n".join(errors))
 
 
-def exit_by_findings(checked_project: CheckedProject, *, strict: bool = False) -> NoReturn:
+def exit_by_findings(checked_project: CheckedProject) -> NoReturn:
     """End with the status that the findings ask for."""
-    sys.exit(exit_status(checked_project.findings, strict=strict))
+    sys.exit(exit_status(checked_project.findings))
 
 
 @contextmanager
@@ -210,8 +212,7 @@ def read_input(path: Path, max_bytes: int) -> bytes:
         with path.open("rb") as stream:
             return stream.read(max_bytes + 1)
     except OSError as error:
-        msg = f"cannot read {path}: {error.strerror or error}"
-        raise click.ClickException(msg) from None
+        raise click.ClickException(f"cannot read {path}: {error.strerror or error}") from None
 
 
 def summarise_counts(findings: Sequence[Diagnostic]) -> str:
@@ -240,8 +241,7 @@ def choose_format(
     if ending not in formats:
         *others, last = formats
         advice = f"{', '.join(others)} or {last}, or give --format" if others else last
-        msg = f"the ending of `{output}` names no format: end it in {advice}"
-        raise click.UsageError(make_visible(msg))
+        raise click.UsageError(make_visible(f"the ending of `{output}` names no format: end it in {advice}"))
     return formats[ending]
 
 
@@ -352,8 +352,7 @@ def split_words(words: Iterable[str], joint: str, what: str, example: str) -> di
     for word in words:
         name, found, value = word.partition(joint)
         if not name or not found:
-            msg = f"`{word}` is no {what}: write `{example}`"
-            raise click.UsageError(make_visible(msg))
+            raise click.UsageError(make_visible(f"`{word}` is no {what}: write `{example}`"))
         pairs[name] = value
     return pairs
 
@@ -382,3 +381,31 @@ def settle_problems(problems: Iterable[Diagnostic]) -> tuple[Diagnostic, ...]:
     from archgen.pipeline import index_all_rules
 
     return settle_diagnostics(problems, index_all_rules(), {})
+
+
+def find_asked_files(paths: tuple[Path, ...], project: Path | None) -> tuple[Path | None, tuple[Path, ...]]:
+    """Return the project that is asked for, and the files of it that alone are; none for all."""
+    if not paths:
+        return project, ()
+    if project is not None:
+        other_paths = [path for path in paths if not os.path.isfile(path)]  # noqa: PTH113 - Path.is_file may raise
+        if other_paths:
+            raise click.UsageError(f"the project is named twice: {other_paths[0]} and -C {project}")
+        return project, paths
+    from archgen.project.project_search import PROJECT_FILE, find_project_of_slice
+
+    if len(paths) == 1:
+        folder = find_project_of_slice(paths[0])
+        return folder or paths[0], paths if folder else ()
+    folders = [path.resolve().parent if path.name == PROJECT_FILE else find_project_of_slice(path) for path in paths]
+    if folders[0] is None or any(folder != folders[0] for folder in folders):
+        raise click.UsageError(f"these are not files of one project: {', '.join(map(str, paths))}")
+    return folders[0], paths
+
+
+def name_files(checked_project: CheckedProject, files: Iterable[Path]) -> dict[str, Path]:
+    """Return files by what the project calls them: their path below its folder."""
+    from archgen.project.project_search import name_path_from
+
+    root = os.path.realpath(checked_project.root)
+    return {name_path_from(root, os.path.realpath(file)): file for file in files}

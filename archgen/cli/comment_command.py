@@ -25,8 +25,7 @@ def command(file: Path, key: str) -> None:
     try:
         text = file.read_text(encoding="utf-8")
     except (OSError, UnicodeDecodeError):
-        msg = f"{make_visible(str(file))} cannot be read as UTF-8 text"
-        raise click.ClickException(msg) from None
+        raise click.ClickException(f"{make_visible(str(file))} cannot be read as UTF-8 text") from None
     if file.suffix == ".json":
         _post_on_requests(text, key)
         return
@@ -59,5 +58,4 @@ def _post_on_requests(text: str, key: str) -> None:
             make_visible(f"#{comment.number}: {outcome if is_failure else f'comment {outcome}'}"), err=is_failure
         )
     if failed_count:
-        msg = f"{failed_count} of {len(comments)} comments could not be put"
-        raise click.ClickException(msg)
+        raise click.ClickException(f"{failed_count} of {len(comments)} comments could not be put")

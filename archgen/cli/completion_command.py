@@ -22,6 +22,5 @@ def command(shell: str) -> None:
 
     completion_class = get_completion_class(shell)
     if completion_class is None:
-        msg = f"completion for {shell} is not available"
-        raise click.ClickException(msg)
+        raise click.ClickException(f"completion for {shell} is not available")
     click.echo(completion_class(main, {}, "archgen", "_ARCHGEN_COMPLETE").source())

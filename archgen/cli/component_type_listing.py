@@ -84,8 +84,7 @@ def _require_library(library: str, library_ids: set[str]) -> None:
     if library not in library_ids:
         names = (*sorted(library_ids), SHIPPED_LIBRARY)
         guess = did_you_mean(library, names) or f"there are {', '.join(f'`{name}`' for name in names)}"
-        msg = f"the project has no library `{library}`; {guess}"
-        raise click.UsageError(msg)
+        raise click.UsageError(f"the project has no library `{library}`; {guess}")
 
 
 def _list_rows(entries: Mapping[str, MappingEntry]) -> Iterator[tuple[str, ...]]:

@@ -63,13 +63,7 @@ _MAX_UNREAD = 10
 @click.option(
     "--env", "variables", metavar="NAME=VALUE", multiple=True, help="A variable of the environment of launch files."
 )
-@click.option(
-    "--format",
-    "form",
-    type=click.Choice(["text", *finding_documents.DOCUMENT_FORMATS]),
-    default="text",
-    show_default=True,
-)
+@shared_options.format_option("text", *finding_documents.DOCUMENT_FORMATS)
 @shared_options.strict_option
 @click.option(
     "--baseline",
@@ -183,8 +177,7 @@ def _keep_report(checked_project: CheckedProject, report: ConformanceReport, nam
 
 def _refuse_wrong_adoption(form: str, *, adopts: bool, is_dry_run: bool) -> None:
     if is_dry_run and not adopts:
-        msg = "--dry-run shows what --adopt would write: give both"
-        raise click.UsageError(msg)
+        raise click.UsageError("--dry-run shows what --adopt would write: give both")
     if adopts and (form != "text" or shared_options.find_asked_variants()):
         msg = "--adopt is for people, and writes what counts in all variants: no --format, no --variant"
         raise click.UsageError(msg)
@@ -224,8 +217,7 @@ def _refuse_unknown_rules(names: Sequence[str]) -> None:
     for name in names:
         if name not in RULE_NAMES:
             guess = did_you_mean(name, RULE_NAMES) or f"rules are {', '.join(sorted(RULE_NAMES))}"
-            msg = f"no rule of a comparison is called `{name}`; {guess}"
-            raise click.UsageError(make_visible(msg))
+            raise click.UsageError(make_visible(f"no rule of a comparison is called `{name}`; {guess}"))
 
 
 def _list_named_paths(checked_project: CheckedProject) -> list[Path]:
@@ -264,15 +256,13 @@ def _observe_or_exit(path: Path, checked_project: CheckedProject, options: Obser
     from archgen.importers.robot_observation import observe_robot
 
     if not path.exists():
-        msg = f"there is no {path}"
-        raise click.UsageError(make_visible(msg))
+        raise click.UsageError(make_visible(f"there is no {path}"))
     try:
         with command_support.explain_write_errors():
             return observe_robot(path, checked_project.root, options)
     except ForeignFileError as error:
         place = error.span.file if error.span.file != "." else str(path)
-        msg = f"{place}: {error.message}; {error.help_line}"
-        raise click.UsageError(make_visible(msg)) from None
+        raise click.UsageError(make_visible(f"{place}: {error.message}; {error.help_line}")) from None
 
 
 def _describe_comparison(comparison: RobotComparison) -> Iterator[str]:

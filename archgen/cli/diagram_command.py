@@ -65,8 +65,7 @@ def command(  # noqa: PLR0913 - one for each option
     format_names = tuple(dict.fromkeys(form.strip() for form in forms.split(",") if form.strip()))
     unknown_formats = [form for form in format_names if form not in DIAGRAM_FORMATS]
     if unknown_formats or not format_names:
-        msg = f"--format takes {', '.join(DIAGRAM_FORMATS)}, separated by commas, not '{forms}'"
-        raise click.UsageError(msg)
+        raise click.UsageError(f"--format takes {', '.join(DIAGRAM_FORMATS)}, separated by commas, not '{forms}'")
     checked_project = command_support.check_before_writing(project, keep_going=keep_going)
     output_options = replace(command_support.make_drawing_options(checked_project, select, level), depth=depth)
     target = output or checked_project.output_folder / "diagrams"

@@ -37,8 +37,7 @@ def _read_variants(
     from archgen.products.compared_versions import read_variant, read_version
 
     if len(variants) > 2:  # noqa: PLR2004 - a comparison has two sides
-        msg = "`--variant` once is that of both versions; twice they are compared: not more often"
-        raise click.UsageError(msg)
+        raise click.UsageError("`--variant` once is that of both versions; twice they are compared: not more often")
     names = [shared_options.split_variants(text) for text in variants]
     if len(names) == 1:
         old, new = (
@@ -47,8 +46,7 @@ def _read_variants(
         )
         return old, new
     if after is not None:
-        msg = "two variants are those of one version: name one, or none for the working tree"
-        raise click.UsageError(msg)
+        raise click.UsageError("two variants are those of one version: name one, or none for the working tree")
     with command_support.explain_missing_versions():
         version = read_version(before, project)
     first, second = (
@@ -218,8 +216,7 @@ def command(  # noqa: PLR0913 - the options of the verb, each by its name
 
     if unpushed:
         if before is not None or variants:
-            msg = "--unpushed says what is compared: no A, no B, no --variant"
-            raise click.UsageError(msg)
+            raise click.UsageError("--unpushed says what is compared: no A, no B, no --variant")
         before, after = _find_unpushed_base(project), "HEAD"
     project = project or _find_meant_project(before, after)
     projects = _list_compared_projects(before, after, project)

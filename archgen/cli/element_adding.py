@@ -67,8 +67,7 @@ def find_group(checked_project: CheckedProject, group_id: str | None) -> str:
         raise click.UsageError(msg)
     if group_id not in groups:
         guess = did_you_mean(group_id, groups) or f"`archgen new group {make_visible(group_id)}` makes one"
-        msg = f"there is no group '{make_visible(group_id)}'; {guess}"
-        raise click.UsageError(msg)
+        raise click.UsageError(f"there is no group '{make_visible(group_id)}'; {guess}")
     return group_id
 
 
@@ -76,8 +75,7 @@ def find_place_of_component(checked_project: CheckedProject, name: str, group: s
     """Return what takes a new component (a group, or a composed component) and its id there. Raise UsageError."""
     holder_id, dot, component_id = name.rpartition(".")
     if dot and group not in {None, holder_id}:
-        msg = f"'{name}' is in the group '{holder_id}', and --group says '{group}'"
-        raise click.UsageError(msg)
+        raise click.UsageError(f"'{name}' is in the group '{holder_id}', and --group says '{group}'")
     holder_id = _find_holder(checked_project, holder_id or group)
     architecture = checked_project.architecture
     siblings = {
@@ -98,15 +96,13 @@ def _find_holder(checked_project: CheckedProject, holder_id: str | None) -> str:
     if holder is None:
         _find_holder(checked_project, holder_id.rpartition(".")[0])
         guess = did_you_mean(holder_id, architecture.shells) or f"`archgen new component {make_visible(holder_id)}`"
-        msg = f"there is no component '{make_visible(holder_id)}'; {guess}"
-        raise click.UsageError(msg)
+        raise click.UsageError(f"there is no component '{make_visible(holder_id)}'; {guess}")
     instance = next((each for each in (holder, *architecture.list_around(holder)) if each.component_type), None)
     if instance is not None:
-        msg = (
+        raise click.UsageError(
             f"'{instance.id}' is an instance of the type '{make_visible(instance.component_type or '')}', which says "
             f"what is inside; add it to the type: {make_visible(str(_find_type_span(checked_project, instance)))}"
         )
-        raise click.UsageError(msg)
     if holder_id not in architecture.shells:
         msg = f"'{holder_id}' holds no components yet; write `components:` with the first one below it: {make_visible(str(holder.at))}"
         raise click.UsageError(msg)
@@ -151,5 +147,4 @@ def raise_refusal(checked_project: CheckedProject, error: Any) -> NoReturn:  # n
     if error.errors:
         command_support.print_findings(error.errors, checked_project, sys.stderr)
     by_hand = "".join(f"\n{make_visible(line)}" for line in error.by_hand.split("\n")) if error.by_hand else ""
-    msg = f"{make_visible(error.message)}; nothing was written{by_hand}"
-    raise click.ClickException(msg)
+    raise click.ClickException(f"{make_visible(error.message)}; nothing was written{by_hand}")

@@ -7,6 +7,7 @@ import sys
 
 import click
 
+from archgen.cli import shared_options
 from archgen.diagnostics import did_you_mean, name_rule
 from archgen.diagnostics.text_columns import align_rows, find_width
 
@@ -16,19 +17,17 @@ from archgen.diagnostics.text_columns import align_rows, find_width
 @click.option(
     "--distro", metavar="NAME", help="With `ros.TYPE`: the file and the line of each fact, for a distribution of ROS."
 )
-@click.option("--format", "form", type=click.Choice(["text", "json"]), default="text", show_default=True)
+@shared_options.format_option("text", "json")
 def command(rule: str | None, distro: str | None, form: str) -> None:
     """Explain RULE: why it is there, a bad and a good example. Without RULE, list all rules.
 
     For a component type that ships, such as `ros.amcl`, say where it was read.
     """
     if rule is None and distro is not None:
-        msg = "--distro goes with a component type that ships, such as `ros.amcl`"
-        raise click.UsageError(msg)
+        raise click.UsageError("--distro goes with a component type that ships, such as `ros.amcl`")
     if rule is not None and (distro is not None or "." in rule):
         if form == "json":
-            msg = "--format json goes with rules"
-            raise click.UsageError(msg)
+            raise click.UsageError("--format json goes with rules")
         explain_sources(rule, distro)
         return
     from archgen import pipeline
@@ -56,8 +55,7 @@ def command(rule: str | None, distro: str | None, form: str) -> None:
         )
     else:
         guess = did_you_mean(rule, rules)
-        msg = f"there is no rule '{rule}'" + (f"; {guess}" if guess else "")
-        raise click.UsageError(msg)
+        raise click.UsageError(f"there is no rule '{rule}'" + (f"; {guess}" if guess else ""))
 
 
 def explain_sources(name: str, distro: str | None) -> None:
@@ -71,11 +69,9 @@ def explain_sources(name: str, distro: str | None) -> None:
         guess = did_you_mean(name, names)
         raise click.UsageError(f"{msg}; {guess}" if guess else msg)
     if distro is not None and distro not in KNOWN_DISTROS:
-        msg = f"nothing ships for the distribution '{distro}'; there are {', '.join(KNOWN_DISTROS)}"
-        raise click.UsageError(msg)
+        raise click.UsageError(f"nothing ships for the distribution '{distro}'; there are {', '.join(KNOWN_DISTROS)}")
     lines = list(list_source_lines(name, distro))
     if not lines:
-        msg = f"'{name}' does not ship for {distro}; `archgen explain {name}` says for which it does"
-        raise click.UsageError(msg)
+        raise click.UsageError(f"'{name}' does not ship for {distro}; `archgen explain {name}` says for which it does")
     for line in lines:
         click.echo(line)

@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
 @click.command("find")
 @click.argument("words", nargs=-1, required=True)
-@click.option("--format", "form", type=click.Choice(["text", "json"]), default="text", show_default=True)
+@shared_options.format_option("text", "json")
 @shared_options.project_option
 @shared_options.variant_option
 def command(words: tuple[str, ...], form: str, project: Path | None) -> None:

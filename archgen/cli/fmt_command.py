@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 import click
 
-from archgen.cli import asked_files, command_support, shared_options
+from archgen.cli import command_support, shared_options
 
 if TYPE_CHECKING:
     from archgen.edit.element_edit import FileEdit
@@ -29,14 +29,14 @@ def command(*, paths: tuple[Path, ...], project: Path | None, only_checks: bool,
     comment changes, and none changes its place: each file is proven to say the same before it is written. What cannot be
     laid out stays as it is and is named.
     """
-    project, files = asked_files.find_asked_files(paths, project)
+    project, files = command_support.find_asked_files(paths, project)
     checked_project = command_support.check_or_exit(project)
 
     from archgen.edit.formatted_slices import UnformattedFile, plan_formatting
 
     edits: list[FileEdit] = []
     is_left = False
-    for planned in plan_formatting(checked_project, asked_files.name_files(checked_project, files)):
+    for planned in plan_formatting(checked_project, command_support.name_files(checked_project, files)):
         if isinstance(planned, UnformattedFile):
             place = f"{planned.file}:{planned.line}" if planned.line else planned.file
             command_support.print_warning(f"{place}: {planned.reason}: the file stays as it is")

@@ -99,8 +99,7 @@ def command(  # noqa: C901, PLR0913 - one for each option
     from archgen.products.workspace_product import WorkspaceRequest, write_workspaces
 
     if name is None and (overwrite or keep or settings):
-        msg = "`--overwrite`, `--keep` and `--option` want the backend that they are for"
-        raise click.UsageError(msg)
+        raise click.UsageError("`--overwrite`, `--keep` and `--option` want the backend that they are for")
     try:
         checked_project = command_support.check_before_writing(project, keep_going=keep_going)
     except click.UsageError as error:  # without a project nothing is listed either
@@ -187,8 +186,7 @@ def _read_settings(settings: tuple[str, ...]) -> dict[str, str]:
     for setting in settings:
         key, equals, value = setting.partition("=")
         if not equals:
-            msg = f"`--option` takes KEY=VALUE, not '{setting}'"
-            raise click.UsageError(msg)
+            raise click.UsageError(f"`--option` takes KEY=VALUE, not '{setting}'")
         values[key.strip()] = value.strip()
     return values
 

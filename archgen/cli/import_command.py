@@ -123,8 +123,7 @@ def command(  # noqa: PLR0913, PLR0917 - one for each option
             import_format, {"--output": output, "--merge": merge, "--check": checks, "--format": form != "text"}
         )
         if len(files) != 1:
-            msg = "one file of requirements is taken at a time"
-            raise click.UsageError(msg)
+            raise click.UsageError("one file of requirements is taken at a time")
         import_requirements(import_format, files[0], into, project, dry_run=dry_run)
         return
     _refuse_options(import_format, {"--into": into})
@@ -139,8 +138,7 @@ def _take_arguments(words: Sequence[str]) -> tuple[list[str], dict[str, str]]:
     matches = [None if _is_there(word) else _LAUNCH_ARGUMENT.fullmatch(word) for word in words]
     files = [word for word, match in zip(words, matches, strict=True) if match is None]
     if not files:
-        msg = "name a file, too"
-        raise click.UsageError(msg)
+        raise click.UsageError("name a file, too")
     return files, {match[1]: match[2] for match in matches if match is not None}
 
 
@@ -157,8 +155,7 @@ def _split_words(words: Sequence[str]) -> tuple[ImportFormat, list[Path]]:
     if len(formats) == 1:
         return next(iter(formats.values())), files
     reason = "they are of several formats" if formats else f"its name does not tell the format of {files[0]}"
-    msg = f"{reason}: name it first, one of {', '.join(known_formats)}"
-    raise click.UsageError(make_visible(msg))
+    raise click.UsageError(make_visible(f"{reason}: name it first, one of {', '.join(known_formats)}"))
 
 
 def _refuse_format(word: str, known_formats: Iterable[str]) -> None:
@@ -170,8 +167,7 @@ def _refuse_format(word: str, known_formats: Iterable[str]) -> None:
 def _find_files(words: Sequence[str]) -> list[Path]:
     for word in words:
         if not _is_there(word):
-            msg = f"there is no file {word}"
-            raise click.UsageError(make_visible(msg))
+            raise click.UsageError(make_visible(f"there is no file {word}"))
     return [Path(word) for word in words]
 
 
@@ -186,8 +182,7 @@ def _is_there(word: str) -> bool:
 def _refuse_options(import_format: ImportFormat, given_options: dict[str, object]) -> None:
     for option, value in given_options.items():
         if value:
-            msg = f"{option} does not go with {import_format.name}"
-            raise click.UsageError(msg)
+            raise click.UsageError(f"{option} does not go with {import_format.name}")
 
 
 def _find_target(output: Path | None, project: Path | None) -> Path:
@@ -199,8 +194,7 @@ def _find_target(output: Path | None, project: Path | None) -> Path:
     try:
         root, first_file = find_project(project)
     except ProjectNotFoundError:
-        msg = "there is no project here: `-o FOLDER` makes a new one of the model"
-        raise click.UsageError(msg) from None
+        raise click.UsageError("there is no project here: `-o FOLDER` makes a new one of the model") from None
     if first_file != PROJECT_FILE:
         msg = "a project of a single file reads no slices: put it into a folder as archgen.yaml first, or name another by `-o`"
         raise click.UsageError(msg)

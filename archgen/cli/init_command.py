@@ -6,14 +6,18 @@ import os
 import shlex
 import sys
 from collections import Counter
+from collections.abc import Callable
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, TypeVar
 
 import click
 
 from archgen.cli import command_support
 from archgen.diagnostics import make_visible
+from archgen.frozen import replace
 from archgen.model.known_interfaces import KNOWN_DISTROS
+from archgen.start import start_answers
+from archgen.start.start_answers import ForgeName, GroupAnswer, PartnerAnswer, StartAnswers
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -101,14 +105,11 @@ def command(  # noqa: PLR0913, PLR0917 - one for each option
         return
     _refuse_existing_project(target)
     if tables and groups:
-        msg = "--from takes the groups from the table: leave out --group"
-        raise click.UsageError(msg)
+        raise click.UsageError("--from takes the groups from the table: leave out --group")
     if tables and empty:
-        msg = "--from begins with what the table says: leave out --empty"
-        raise click.UsageError(msg)
+        raise click.UsageError("--from begins with what the table says: leave out --empty")
     if headings and not tables:
-        msg = "--map says what the headings of a table mean: it needs --from"
-        raise click.UsageError(msg)
+        raise click.UsageError("--map says what the headings of a table mean: it needs --from")
     heading_map = _parse_headings(headings)
     answers = _gather_answers(
         target,
@@ -128,11 +129,7 @@ def command(  # noqa: PLR0913, PLR0917 - one for each option
         "ci": ci,
     }
     if not yes and sys.stdin.isatty() and sys.stdout.isatty():
-        from archgen.cli import init_questions
-
-        answers = init_questions.ask_questions(
-            answers, frozenset(key for key, value in flag_values.items() if value), KNOWN_DISTROS
-        )
+        answers = ask_questions(answers, frozenset(key for key, value in flag_values.items() if value), KNOWN_DISTROS)
     imported = _import_tables(tables, answers.distro, heading_map) if tables else None
     if imported:
         answers = add_partners(answers, imported.data.get("partners", {}))
@@ -201,8 +198,7 @@ def _refuse_existing_project(target: Path) -> None:
     from archgen.project import PROJECT_FILE
 
     if _has_project(target):
-        msg = f"{target / PROJECT_FILE} is there already; nothing was written"
-        raise click.ClickException(msg)
+        raise click.ClickException(f"{target / PROJECT_FILE} is there already; nothing was written")
 
 
 def _gather_answers(target: Path, **flags: Any) -> StartAnswers:  # noqa: ANN401 - as `gathered` takes them
@@ -307,3 +303,71 @@ def _print_outcome(target: Path, checked_project: CheckedProject, project_plan: 
 
 def _count_things(count: int, noun: str) -> str:
     return f"{count} {noun}{'s' * (count != 1)}"
+
+
+T = TypeVar("T")
+FORGE_CHOICES: tuple[ForgeName, ...] = ("github", "gitlab", "none")
+
+
+def ask_questions(defaults: StartAnswers, answered: frozenset[str], distros: tuple[str, ...]) -> StartAnswers:
+    """Ask for everything that no flag has answered. `answered` has the flags' names."""
+    click.echo("A few questions; Enter takes what stands in brackets, Ctrl-C leaves everything as it is.\n")
+    title = (
+        defaults.title if "title" in answered else click.prompt("Title of the project", default=defaults.title).strip()
+    )
+    distro = defaults.distro
+    if "distro" not in answered:
+        distro = click.prompt("ROS distribution", default=distro, type=click.Choice(distros))
+    partners = defaults.partners if "partner" in answered else _ask_partners()
+    groups = defaults.groups if "group" in answered else _ask_groups(defaults.groups, partners)
+    forge = defaults.forge
+    if "ci" not in answered:
+        forge = click.prompt("Where is it reviewed", default=forge, type=click.Choice(FORGE_CHOICES))
+    return replace(defaults, title=title, distro=distro, partners=partners, groups=groups, forge=forge)
+
+
+def _ask_partners() -> tuple[PartnerAnswer, ...]:
+    click.echo("\nPartners, one after the other: an id, optionally `id = Title`, and who reviews for them: @handle.")
+    partners: list[PartnerAnswer] = []
+
+    def read_partner(words: str) -> PartnerAnswer | None:
+        made = start_answers.parse_partner(words) if words.strip() else None
+        start_answers.require_distinct([*partners, *([made] if made else [])], "partner")
+        return made
+
+    while new_partner := _ask_until(
+        f"Partner {len(partners) + 1}, Enter for none" if not partners else "Next, Enter to go on", "", read_partner
+    ):
+        partners.append(new_partner)
+    return tuple(partners)
+
+
+def _ask_groups(default: tuple[GroupAnswer, ...], partners: tuple[PartnerAnswer, ...]) -> tuple[GroupAnswer, ...]:
+    def read_groups(words: str) -> tuple[GroupAnswer, ...]:
+        made = tuple(start_answers.parse_group(part, ()) for part in words.split(",") if part.strip())
+        start_answers.require_distinct(made, "group")
+        return made or default
+
+    chosen_groups = _ask_until(
+        "\nFirst functional groups, with commas between", ", ".join(group.id for group in default), read_groups
+    )
+    if not partners:
+        return chosen_groups
+    choice = click.Choice([partner.id for partner in partners])
+    first = partners[0].id
+    return tuple(
+        replace(group, owner=click.prompt(f"Owner of {group.title}", default=first, type=choice))
+        for group in chosen_groups
+    )
+
+
+def _ask_until(question: str, default: str, read_answer: Callable[[str], T]) -> T:
+    def parse_answer(words: str) -> T:
+        try:
+            return read_answer(words)
+        except ValueError as error:
+            # click asks again after a UsageError of a `value_proc`.
+            raise click.UsageError(str(error)) from None
+
+    answer: T = click.prompt(question, default=default, show_default=bool(default), value_proc=parse_answer)
+    return answer

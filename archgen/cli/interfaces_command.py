@@ -81,8 +81,7 @@ def command(  # noqa: PLR0913 - one for each option
     from archgen.products import agreement_documents, product_writing
 
     if since and signed:
-        msg = "--signed marks what changed as --since does: give one of them"
-        raise click.UsageError(msg)
+        raise click.UsageError("--signed marks what changed as --since does: give one of them")
     form = command_support.choose_format(form, output, agreement_documents.FORMAT_BY_ENDING, "markdown")
     if issue_date is not None:
         issue_date = _check_date(issue_date)

@@ -43,7 +43,7 @@ _SELECTED_KINDS = frozenset(
     metavar="ID",
     help="With `--of component_types`: only those of this library; `builtin` are those that ship with archgen.",
 )
-@click.option("--format", "form", type=click.Choice(["text", "csv", "json"]), default="text", show_default=True)
+@shared_options.format_option("text", "csv", "json")
 @shared_options.project_option
 @shared_options.variant_option
 def command(  # noqa: PLR0913 - one for each option
@@ -65,11 +65,9 @@ def command(  # noqa: PLR0913 - one for each option
     command_support.print_findings_above(checked_project, lowest_severity=Severity.ERROR)
     selector_text = " ".join((*selector, *([select] if select else [])))
     if selector_text and sort not in _SELECTED_KINDS:
-        msg = f"a selector names elements: `--of {sort}` takes none"
-        raise click.UsageError(msg)
+        raise click.UsageError(f"a selector names elements: `--of {sort}` takes none")
     if library is not None and sort != "component_types":
-        msg = "`--library` goes with `--of component_types`"
-        raise click.UsageError(msg)
+        raise click.UsageError("`--library` goes with `--of component_types`")
     if sort == "backends":
         columns, rows = _list_backends(checked_project)
     elif sort == "component_types":
@@ -95,8 +93,7 @@ def _list_elements(
     if meant_kind and any(
         p.severity == "error" for p in project_views.select_elements(checked_project, selector_text)[1]
     ):
-        msg = f"nothing is called `{selector_text}`; did you mean `archgen list --of {meant_kind}`?"
-        raise click.UsageError(msg)
+        raise click.UsageError(f"nothing is called `{selector_text}`; did you mean `archgen list --of {meant_kind}`?")
     selection = command_support.select_or_exit(checked_project, selector_text or None)
     return project_views.list_rows(checked_project, OutputOptions(selection, selector_text), kind)
 

@@ -18,8 +18,7 @@ def command(*, stdio: bool) -> None:  # noqa: ARG001 - it is the only way there 
     It finds the project of each file that is opened, checks it while somebody types, and writes nothing.
     """
     if importlib.util.find_spec("pygls") is None:
-        msg = 'archgen lsp needs pygls: pip install "archgen[lsp]"'
-        raise click.UsageError(msg)
+        raise click.UsageError('archgen lsp needs pygls: pip install "archgen[lsp]"')
     from archgen import __version__
     from archgen.lsp.language_server import create_server, log_in_lines
 

@@ -39,8 +39,7 @@ def command(project: Path | None, *, allow_writes: bool) -> None:
     read outside of it, and nothing written without --allow-writes.
     """
     if importlib.util.find_spec("mcp") is None:
-        msg = 'archgen mcp needs mcp: pip install "archgen[mcp]"'
-        raise click.UsageError(msg)
+        raise click.UsageError('archgen mcp needs mcp: pip install "archgen[mcp]"')
     make_server(project, allow_writes=allow_writes).run("stdio")
 
 
@@ -104,8 +103,7 @@ class ProjectTools:
 
         with self._lock, _explain(EditRefusedError, ProjectNotFoundError):
             if any({*edit} != {"file", "old", "new"} for edit in edits):
-                message = 'each edit has "file", "old" and "new"'
-                raise EditRefusedError(message)
+                raise EditRefusedError('each edit has "file", "old" and "new"')
             checked_project = pipeline.check_project(self._project)
             proposal = judge_proposal(checked_project, [TextChange(**edit) for edit in edits])
             self._last_number += 1
@@ -132,8 +130,7 @@ class ProjectTools:
         with self._lock, _explain(EditRefusedError, OutputError, OSError):
             known = self._proposals.get(proposal)
             if known is None:
-                message = f"there is no proposal {proposal}, or it was made long ago: propose it again"
-                raise EditRefusedError(message)
+                raise EditRefusedError(f"there is no proposal {proposal}, or it was made long ago: propose it again")
             errors = [each for each in known.new_findings if each.severity is Severity.ERROR]
             if errors:
                 message = f"it would bring {len(errors)} errors, the first: {errors[0].message}"

@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 @click.command("merge-check")
 @click.argument("main_line", metavar="MAIN")
 @click.argument("branches", metavar="OTHER...", nargs=-1, required=True)
-@click.option("--format", "form", type=click.Choice(["text", "json"]), default="text", show_default=True)
+@shared_options.format_option("text", "json")
 @shared_options.strict_option
 @shared_options.project_option
 def command(main_line: str, branches: tuple[str, ...], form: str, *, strict: bool, project: Path | None) -> None:
@@ -37,8 +37,7 @@ def command(main_line: str, branches: tuple[str, ...], form: str, *, strict: boo
 
     folders = _list_folders(project, (main_line, *branches))
     if form == "json" and folders:
-        msg = f"this folder only holds projects: name one with -C, such as `-C {folders[0]}`"
-        raise click.UsageError(msg)
+        raise click.UsageError(f"this folder only holds projects: name one with -C, such as `-C {folders[0]}`")
     paths = [(project or Path()) / folder for folder in folders] if folders else [project]
     with command_support.explain_wrong_usage(GitError, ProjectNotFoundError):
         merges_by_project = [list(preview_merges(path, main_line, branches, BRANCH_JUDGES)) for path in paths]

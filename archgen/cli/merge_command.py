@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     is_flag=True,
     help="Write the merge although people have to settle something: with git's markers, or new errors.",
 )
-@click.option("--format", "form", type=click.Choice(["text", "json"]), default="text", show_default=True)
+@shared_options.format_option("text", "json")
 @shared_options.strict_option
 @shared_options.project_option
 def command(  # noqa: PLR0913 - one for each option

@@ -46,6 +46,5 @@ def command(  # noqa: PLR0913, PLR0917 - one for each option
         )
 
     if group is None and file is None:
-        msg = "say where to: a group, or a file with --file"
-        raise click.UsageError(msg)
+        raise click.UsageError("say where to: a group, or a file with --file")
     refactoring_support.run_refactoring(project, plan, format_name, dry_run=dry_run)

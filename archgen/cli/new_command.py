@@ -185,8 +185,7 @@ def _require_variants(checked_project: CheckedProject, names: tuple[str, ...]) -
         if name not in known_names:
             known = ", ".join(known_names) or "none yet"
             guess = did_you_mean(name, known_names) or f"there are: {known}"
-            msg = make_visible(f"there is no variant '{name}'; {guess}")
-            raise click.UsageError(msg)
+            raise click.UsageError(make_visible(f"there is no variant '{name}'; {guess}"))
 
 
 def _require_selection(checked_project: CheckedProject, selector: str) -> None:

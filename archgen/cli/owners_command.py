@@ -24,7 +24,7 @@ _TEXT_WIDTH = 96
 @click.command("owners")
 @shared_options.project_argument
 @shared_options.variant_option
-@click.option("--format", "form", type=click.Choice(["text", "codeowners", "json"]), default="text", show_default=True)
+@shared_options.format_option("text", "codeowners", "json")
 @shared_options.file_option("The file to write.  [default: the terminal]")
 @shared_options.keep_going_option
 def command(project: Path | None, form: str, output: Path | None, *, keep_going: bool) -> None:

@@ -32,11 +32,9 @@ def command(project: Path | None, output: Path | None, select: str | None, *, re
     from archgen.products import product_writing, project_outputs
 
     if select and not resolved:
-        msg = "--select goes with --resolved: a packed project is whole"
-        raise click.UsageError(msg)
+        raise click.UsageError("--select goes with --resolved: a packed project is whole")
     if output is not None and output != Path("-") and output.suffix not in {"", *YAML_ENDINGS}:
-        msg = f"what is packed is YAML: end `{output.name}` in .yaml"
-        raise click.UsageError(make_visible(msg))
+        raise click.UsageError(make_visible(f"what is packed is YAML: end `{output.name}` in .yaml"))
     checked_project = command_support.check_before_writing(project, keep_going=keep_going)
     with command_support.explain_write_errors():
         if resolved:

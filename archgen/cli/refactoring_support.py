@@ -37,8 +37,7 @@ def read_kind(text: str | None) -> str | None:
     kinds = {kind.removesuffix("_declaration"): kind for kind in DECLARING_PARTS.values()}
     word = text and text.replace(" ", "_").replace("-", "_")
     if word is not None and word not in kinds:
-        msg = f"no kind `{text}`: {did_you_mean(word, kinds) or ', '.join(sorted(kinds))}"
-        raise click.UsageError(msg)
+        raise click.UsageError(f"no kind `{text}`: {did_you_mean(word, kinds) or ', '.join(sorted(kinds))}")
     return None if word is None else kinds[word]
 
 

@@ -30,11 +30,7 @@ _FORMAT_BY_ENDING = {".docx": "docx", ".pdf": "pdf", ".xlsx": "xlsx"}
     type=click.Choice(["docx", "pdf", "xlsx"]),
     help="The format, where the file's ending does not say it.  [default: docx]",
 )
-@click.option(
-    "--template",
-    type=click.Path(exists=True, dir_okay=False, path_type=Path),
-    help="A .docx or .dotx whose styles, cover, headers, footers and paper size are taken.",
-)
+@shared_options.template_option("A .docx or .dotx whose styles, cover, headers, footers and paper size are taken.")
 @click.option(
     "--document",
     type=click.Choice(["deliverable", "data-sheets", "workbook", "full"]),
@@ -77,8 +73,7 @@ def command(  # noqa: PLR0913 - one for each option
         msg = "the workbook is an .xlsx, and of the other documents there is none: `--document workbook` goes with `--format xlsx` alone"
         raise click.UsageError(msg)
     if template is not None and form == "xlsx":
-        msg = "a workbook takes no template: `--template` goes with docx and pdf"
-        raise click.UsageError(msg)
+        raise click.UsageError("a workbook takes no template: `--template` goes with docx and pdf")
     checked_project = command_support.check_before_writing(project, keep_going=keep_going)
     output_options = replace(
         command_support.make_drawing_options(checked_project, select, level, revision),

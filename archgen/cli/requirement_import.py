@@ -44,8 +44,7 @@ def import_requirements(
 
 def _refuse_single_file(checked_project: CheckedProject) -> None:
     if checked_project.loaded_project.first_file != PROJECT_FILE:
-        msg = "a project of a single file reads no slices: put it into a folder as archgen.yaml first"
-        raise click.UsageError(msg)
+        raise click.UsageError("a project of a single file reads no slices: put it into a folder as archgen.yaml first")
 
 
 def _read_file(import_format: ImportFormat, file: Path, checked_project: CheckedProject) -> ImportedRequirements:
@@ -59,8 +58,7 @@ def _read_file(import_format: ImportFormat, file: Path, checked_project: Checked
         click.echo("Nothing was written.", err=True)
         raise click.exceptions.Exit(1) from None
     except OSError as error:
-        msg = f"{file} cannot be read: {error.strerror}"
-        raise click.ClickException(make_visible(msg)) from None
+        raise click.ClickException(make_visible(f"{file} cannot be read: {error.strerror}")) from None
     return imported
 
 
@@ -86,8 +84,7 @@ def _make_slice(checked_project: CheckedProject, imported: ImportedRequirements,
     target = _find_target(checked_project, into)
     root = checked_project.root.resolve()
     if not target.is_relative_to(root):
-        msg = f"{into} does not lie in the project's folder"
-        raise click.UsageError(make_visible(msg))
+        raise click.UsageError(make_visible(f"{into} does not lie in the project's folder"))
     sections = {"use_cases": imported.use_cases, "requirements": imported.requirements}
     requirement_slice = make_requirement_slice(checked_project, sections, target.relative_to(root).as_posix())
     if requirement_slice.errors:

@@ -65,8 +65,7 @@ def split_variants(text: str | None) -> tuple[str, ...]:
 def _keep_variants(context: click.Context, _parameter: click.Parameter, text: str | None) -> None:
     names = split_variants(text)
     if text is not None and not names:
-        msg = "`--variant` takes the ids of variants, such as `simulation`"
-        raise click.UsageError(msg)
+        raise click.UsageError("`--variant` takes the ids of variants, such as `simulation`")
     context.meta[VARIANT_KEY] = names
 
 
@@ -164,8 +163,7 @@ def backend_argument(makes: str, *, required: bool = True) -> Callable[[CommandF
 def refuse_missing_backend(makes: str, advice: str = "") -> NoReturn:
     """Say which backends there are, since nobody names one."""
     names = ", ".join(sorted(_list_backend_ids(makes)))
-    msg = f"name what to make: {names}; `archgen list --of backends` says what each is{advice}"
-    raise click.UsageError(msg)
+    raise click.UsageError(f"name what to make: {names}; `archgen list --of backends` says what each is{advice}")
 
 
 def complete_products(_context: click.Context, _parameter: click.Parameter, incomplete: str) -> list[str]:
@@ -194,9 +192,18 @@ def partner_option(help_text: str, *, required: bool = False) -> Callable[[Comma
     return click.option("--partner", metavar="ID", required=required, shell_complete=_complete_partners, help=help_text)
 
 
-document_format_option = click.option(
-    "--format", "form", type=click.Choice(["text", "markdown", "json"]), default="text", show_default=True
-)
+def format_option(*formats: str) -> Callable[[CommandFunction], CommandFunction]:
+    """Make the option of a verb that says the same in several formats; the first is the default."""
+    return click.option("--format", "form", type=click.Choice(formats), default=formats[0], show_default=True)
+
+
+document_format_option = format_option("text", "markdown", "json")
+
+
+def template_option(help_text: str) -> Callable[[CommandFunction], CommandFunction]:
+    """Make the option of a verb that writes into a document of the user's."""
+    path_type = click.Path(exists=True, dir_okay=False, path_type=Path)
+    return click.option("--template", type=path_type, help=help_text)
 
 
 def file_option(help_text: str) -> Callable[[CommandFunction], CommandFunction]:

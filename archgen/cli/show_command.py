@@ -23,7 +23,7 @@ _TEXT_WIDTH = 96
 
 @click.command("show")
 @click.argument("words", nargs=-1, required=True)
-@click.option("--format", "form", type=click.Choice(["text", "json"]), default="text", show_default=True)
+@shared_options.format_option("text", "json")
 @shared_options.project_option
 @shared_options.variant_option
 def command(words: tuple[str, ...], form: str, project: Path | None) -> None:

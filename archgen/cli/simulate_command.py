@@ -34,7 +34,7 @@ if TYPE_CHECKING:
     type=click.Path(path_type=Path, dir_okay=False),
     help="With one --chain: write the run in which it was latest, for ui.perfetto.dev.",
 )
-@click.option("--format", "form", type=click.Choice(["text", "json"]), default="text", show_default=True)
+@shared_options.format_option("text", "json")
 def command(  # noqa: PLR0913, PLR0917 - one for each option
     project: Path | None,
     seconds: int,
@@ -57,8 +57,7 @@ def command(  # noqa: PLR0913, PLR0917 - one for each option
     from archgen.timing.run_analysis import analyse_architecture
 
     if trace_file is not None and len(set(asked)) != 1:
-        msg = "--trace shows one chain: name it with --chain"
-        raise click.UsageError(msg)
+        raise click.UsageError("--trace shows one chain: name it with --chain")
     checked_project = command_support.check_or_exit(project)
     command_support.print_findings_above(checked_project, lowest_severity=Severity.ERROR)
     architecture = checked_project.architecture
@@ -118,8 +117,7 @@ def _write_trace(
         else None
     )
     if schedule is None:
-        msg = f"nothing passed along the chain {chain_id} in these runs: there is no run to write"
-        raise click.ClickException(msg)
+        raise click.ClickException(f"nothing passed along the chain {chain_id} in these runs: there is no run to write")
     with command_support.explain_write_errors():
         write_product_file(checked_project, target, format_trace(chain_id, schedule))
     # Not on standard output, where JSON may stand.

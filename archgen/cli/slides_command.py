@@ -18,11 +18,7 @@ if TYPE_CHECKING:
 @shared_options.project_argument
 @shared_options.variant_option
 @shared_options.output_option("The file", "slides.pptx")
-@click.option(
-    "--template",
-    type=click.Path(exists=True, dir_okay=False, path_type=Path),
-    help="A .pptx or .potx of 16:9 whose masters, layouts and fonts are taken.",
-)
+@shared_options.template_option("A .pptx or .potx of 16:9 whose masters, layouts and fonts are taken.")
 @click.option("--since", metavar="REV", help="Say what changed since a version (as `archgen diff` takes it).")
 @shared_options.level_option
 @shared_options.revision_option

@@ -16,7 +16,7 @@ from archgen.diagnostics import Severity
 @shared_options.project_argument
 @shared_options.variant_option
 @click.option("--host", metavar="ID", help="Only the steps on this host, with what they wait for elsewhere.")
-@click.option("--format", "form", type=click.Choice(["text", "json"]), default="text", show_default=True)
+@shared_options.format_option("text", "json")
 def command(project: Path | None, host: str | None, form: str) -> None:
     """Print in which order the nodes and programs of PROJECT start, with which commands, and what each waits for.
 

@@ -30,7 +30,7 @@ _NARROW = 100
 @click.option(
     "--select", metavar="WORDS", help="Count only the selected components: `owner:certh`, `sensing`, `tag:safety -x`."
 )
-@click.option("--format", "form", type=click.Choice(["text", "json", "csv"]), default="text", show_default=True)
+@shared_options.format_option("text", "json", "csv")
 @click.option("--history", is_flag=True, help="Show how size, progress and findings grew, from git's history.")
 @click.option(
     "--by",
@@ -47,14 +47,12 @@ def command(project: Path | None, select: str | None, form: str, by: HistoryInte
     With --history: the same at each revision that changed the project, along the first parents of git's HEAD.
     """
     if history and select is not None:
-        msg = "--history counts the whole project: no --select"
-        raise click.UsageError(msg)
+        raise click.UsageError("--history counts the whole project: no --select")
     if history:
         _print_history(project, form, by or "revision")
         return
     if by or form == "csv":
-        msg = "--by and --format csv belong to --history"
-        raise click.UsageError(msg)
+        raise click.UsageError("--by and --format csv belong to --history")
     _print_current(project, form, select)
 
 
@@ -106,8 +104,7 @@ def _print_history(project: Path | None, form: str, by: HistoryInterval) -> None
             project, by, cache=report_cache.cache_folder(), progress=command_support.make_progress_printer("reading")
         )
     except git.NoRepositoryError as error:
-        msg = f"{make_visible(str(error))}; the history is read from its commits"
-        raise click.UsageError(msg) from None
+        raise click.UsageError(f"{make_visible(str(error))}; the history is read from its commits") from None
     except (git.GitError, ProjectNotFoundError) as error:
         raise click.UsageError(str(error)) from None
     if form == "json":

@@ -20,7 +20,7 @@ ANY_PROPOSAL = "any"
 @click.command("timing")
 @shared_options.project_argument
 @shared_options.variant_option
-@click.option("--format", "form", type=click.Choice(["text", "json"]), default="text", show_default=True)
+@shared_options.format_option("text", "json")
 @click.option("--all", "shows_all", is_flag=True, help="Show services, elements and loops on a terminal, too.")
 @click.option("--chain", metavar="ID", help="Show a chain term by term.")
 @click.option(
@@ -100,14 +100,12 @@ def command(  # noqa: PLR0913, PLR0917 - one for each option
         q for q in (chain, why, source or target, sensitivity, budget, propose, recordings or None) if q is not None
     ]
     if (source is None) != (target is None):
-        msg = "--from and --to belong together"
-        raise click.UsageError(msg)
+        raise click.UsageError("--from and --to belong together")
     if len(asked) > 1:
-        msg = (
+        raise click.UsageError(
             "--chain, --why, --from, --sensitivity, --budget, --propose and --measured are questions of their own: "
             "ask one at a time"
         )
-        raise click.UsageError(msg)
     _refuse_writing(written, recordings, adopt, propose, applies=applies)
     checked_project = command_support.check_or_exit(project)
 
@@ -144,8 +142,7 @@ def _refuse_writing(
     written: tuple[str, ...], recordings: tuple[Path, ...], adopt: Path | None, propose: str | None, *, applies: bool
 ) -> None:
     if adopt is not None and (written or not recordings):
-        msg = "--adopt writes what --measured reads, and goes with no --set"
-        raise click.UsageError(msg)
+        raise click.UsageError("--adopt writes what --measured reads, and goes with no --set")
     if (propose is not None and written) or (applies and propose is None):
         msg = "--propose is about what the files say, and goes with no --set; --apply writes what it proposes"
         raise click.UsageError(msg)

@@ -182,8 +182,7 @@ def print_proposal(request: TimingRequest, *, keep_triggers: bool, applies: bool
         _print_lines(chain_remedies.format_proposal(proposal, find_width(sys.stdout), shows_tried=not applies))
     if refusal is not None:
         options = " ".join(f"--set {change}" for change in proposal.best.changes)
-        msg = f"no patch: {refusal}; to be written by hand: {options}"
-        raise click.ClickException(make_visible(msg))
+        raise click.ClickException(make_visible(f"no patch: {refusal}; to be written by hand: {options}"))
     if applies:
         for edit in edits:
             command_support.write_edit(request.checked_project.root, edit, "as proposed")

@@ -55,8 +55,7 @@ def command(  # noqa: PLR0913 - one for each option
         _print_passes(project)
         return
     if not names:
-        msg = "name one pass or several; `archgen transform --list` shows all"
-        raise click.UsageError(msg)
+        raise click.UsageError("name one pass or several; `archgen transform --list` shows all")
     checked_project = command_support.check_before_writing(project, keep_going=keep_going)
     transformed_project = _transform_or_exit(
         checked_project, names, command_support.find_trusted_revision(project, trust)

@@ -72,20 +72,17 @@ def read_record(text: str) -> tuple[SeenRobot, ...]:
     try:
         data = json.loads(text)
         if data["archgen_conform"] != _VERSION:
-            msg = f"it is of version {data['archgen_conform']!r}"
-            raise SeenRecordError(msg)
+            raise SeenRecordError(f"it is of version {data['archgen_conform']!r}")
         return tuple(map(_read_robot, data["robots"]))
     except (ValueError, TypeError, KeyError, AttributeError, RecursionError) as error:
-        msg = f"it is none: {type(error).__name__}: {error}"
-        raise SeenRecordError(msg) from None
+        raise SeenRecordError(f"it is none: {type(error).__name__}: {error}") from None
 
 
 def _read_robot(data: Any) -> SeenRobot:  # noqa: ANN401 - plain data
     kind: ObservationKind = data["kind"]
     ends: dict[str, EndState] = {str(key): state for key, state in data["ends"].items()}
     if kind not in get_args(ObservationKind) or not set(ends.values()) <= {*get_args(EndState)}:
-        msg = "a kind or a state that there is not"
-        raise ValueError(msg)
+        raise ValueError("a kind or a state that there is not")
     differences = [
         SeenDifference(str(each["rule"]), str(each["element"]), str(each["message"])) for each in data["differences"]
     ]

@@ -97,8 +97,7 @@ class _PatchPlanner:
                     if file:
                         return file, path
         if place is None:
-            message = f"no file of the project says `{key}` of `{paths[0][1]}` in a place of its own"
-            raise EditRefusedError(message)
+            raise EditRefusedError(f"no file of the project says `{key}` of `{paths[0][1]}` in a place of its own")
         return place
 
     def _find_file(self, paths: Sequence[_Path], key: str) -> tuple[str, _Path] | None:
@@ -129,8 +128,7 @@ def _prove(
     changed = pipeline.judge_project(load_from_files(overlaid, first_file_of(checked_project)))
     errors = tuple(list_new_errors(checked_project, changed))
     if errors:
-        message = "with it the project would have errors that it does not have now"
-        raise EditRefusedError(message, errors=errors)
+        raise EditRefusedError("with it the project would have errors that it does not have now", errors=errors)
     architecture = pipeline.stand_in_variants(changed, variants).architecture if variants else changed.architecture
     chains = bound_all_chains(analyse_architecture(architecture), architecture)
     for name, bound in configuration.bounds.items():

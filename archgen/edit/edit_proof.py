@@ -161,7 +161,6 @@ def _changed_elements(
 
 
 def _find_sharing_nodes(architecture: Architecture, new_node: Node | None) -> frozenset[str]:
-    """Return the nodes that share a component with a new node."""
     components = set(new_node.implements) if new_node else set()
     return frozenset(node.id for node in architecture.nodes.values() if not components.isdisjoint(node.implements))
 

@@ -93,17 +93,14 @@ def read_editable(checked_project: CheckedProject, file: str) -> tuple[bytes, st
     """Read a file of the project again. Raise EditRefusedError, also where somebody wrote into it meanwhile."""
     data = checked_project.loaded_project.files.fetch_bytes(file)
     if isinstance(data, FileRefusal):
-        message = f"{file} cannot be read: {data.message}"
-        raise EditRefusedError(message)
+        raise EditRefusedError(f"{file} cannot be read: {data.message}")
     try:
         text = data.decode()
     except UnicodeDecodeError:
-        message = f"{file} is not UTF-8"
-        raise EditRefusedError(message) from None
+        raise EditRefusedError(f"{file} is not UTF-8") from None
     # Places are those of the text that was checked.
     if checked_project.sources.text_of(file) not in {None, text.removeprefix(BYTE_ORDER_MARK)}:
-        message = f"{file} was changed since it was read"
-        raise EditRefusedError(message, "run this again")
+        raise EditRefusedError(f"{file} was changed since it was read", "run this again")
     return data, text
 
 
@@ -215,12 +212,10 @@ def parse_text(file: str, text: str) -> ParsedText:
     """Return a text that can be edited by its places. Raise CannotInsertError."""
     document, _ = yaml_parser.parse_yaml(file, text)
     if document is None:
-        msg = f"{file} cannot be parsed: `archgen check` says where"
-        raise CannotInsertError(msg)
+        raise CannotInsertError(f"{file} cannot be parsed: `archgen check` says where")
     # YAML takes a lone carriage return for a line break and editors mostly do not: line numbers would not fit.
     if re.search(r"\r(?!\n)", text):
-        msg = f"{file} holds line breaks that editors and parsers see differently"
-        raise CannotInsertError(msg)
+        raise CannotInsertError(f"{file} holds line breaks that editors and parsers see differently")
     lines = tuple(_LINE_PATTERN.findall(text))
     return ParsedText(lines, document.root, tuple(accumulate(map(len, lines), initial=0)))
 
@@ -234,8 +229,7 @@ def find_holder(parsed: ParsedText, path: tuple[str, ...]) -> tuple[MappingNode,
             return table, path[depth:]
         # An insertion would appear wherever the anchor is used.
         if parsed.text_from(entry.value).startswith("*"):
-            msg = f"`{key}` is written once and used here by its anchor ({entry.value.span})"
-            raise CannotInsertError(msg)
+            raise CannotInsertError(f"`{key}` is written once and used here by its anchor ({entry.value.span})")
         table = entry.value
     return table, ()
 
@@ -251,8 +245,7 @@ def _insert_below_empty(
         or not _EMPTY_VALUE.match(line[entry.key_span.end_column - 1 :])
         or parsed.text_from(holder).startswith("{")
     ):
-        msg = f"`{entry.key}` is not a mapping that is written out ({entry.key_span})"
-        raise CannotInsertError(msg)
+        raise CannotInsertError(f"`{entry.key}` is not a mapping that is written out ({entry.key_span})")
     indent_width = _indent_width(parsed.root)
     indent = " " * (entry.key_span.column - 1 + indent_width)
     yield _join_lines(

@@ -264,17 +264,14 @@ class _Planning:
         assert self._files is not None  # noqa: S101 - a file is in it
         old_file = read_text_file(self._files, file)
         if old_file.problem:
-            msg = f"{file} cannot be brought up to date"
-            raise ImportRefusedError(msg, (old_file.problem,))
+            raise ImportRefusedError(f"{file} cannot be brought up to date", (old_file.problem,))
         if not self._origin.is_of(old_file.text):
-            msg = (
+            raise ImportRefusedError(
                 f"{file} does not come from this file: nothing was written; a comment at its top would be "
                 f"`{self._origin.header.strip()}`; `-o` names another folder"
             )
-            raise ImportRefusedError(msg)
         if diagnostics := earlier_import.read_slice_content(file, old_file.text).diagnostics:
-            msg = f"{file} cannot be brought up to date; nothing was written"
-            raise ImportRefusedError(msg, diagnostics)
+            raise ImportRefusedError(f"{file} cannot be brought up to date; nothing was written", diagnostics)
         return old_file.text
 
     def _read_record(self, path: str) -> str | None:

@@ -47,8 +47,7 @@ def judge_proposal(checked_project: CheckedProject, changes: Iterable[TextChange
         old_content, text = contents[change.file]
         contents[change.file] = old_content, _replace_text(change, text)
     if not contents:
-        message = "there is nothing in it"
-        raise EditRefusedError(message, "say which text of which file becomes which other one")
+        raise EditRefusedError("there is nothing in it", "say which text of which file becomes which other one")
     edits = tuple(_make_edit(file, old, text) for file, (old, text) in sorted(contents.items()))
     files = checked_project.loaded_project.files
     overlaid = OverlaidFiles(files.root, {edit.file: edit.new_content for edit in edits}, files)
@@ -88,8 +87,7 @@ def _replace_text(change: TextChange, text: str) -> str:
         raise EditRefusedError(message, "give a text that stands there once, with some lines around it")
     new_text = text.replace(change.old, change.new) if change.old else change.new
     if len(new_text) > MAX_BYTES:
-        message = f"`{change.file}` would be too large"
-        raise EditRefusedError(message)
+        raise EditRefusedError(f"`{change.file}` would be too large")
     return new_text
 
 
@@ -97,8 +95,7 @@ def _make_edit(file: str, old_content: bytes | None, text: str) -> FileEdit:
     try:
         return FileEdit(file, old_content, text.encode(), 1)
     except UnicodeEncodeError:
-        message = f"`{file}`: the new text is no text"
-        raise EditRefusedError(message) from None
+        raise EditRefusedError(f"`{file}`: the new text is no text") from None
 
 
 def _list_missing(findings: Sequence[Diagnostic], others: Sequence[Diagnostic]) -> tuple[Diagnostic, ...]:

@@ -64,8 +64,7 @@ def change_values(file: str, text: str, changes: Sequence[ValueChange]) -> str:
     new_text = "".join((*pieces, text[last_end:]))
     document, _ = yaml_parser.parse_yaml(file, new_text)
     if document is None or node_to_data(document.root) != expected:
-        msg = f"{file} is written in a way in which more than these values would change"
-        raise CannotInsertError(msg)
+        raise CannotInsertError(f"{file} is written in a way in which more than these values would change")
     return new_text
 
 
@@ -91,10 +90,9 @@ def _list_splices(parsed: ParsedText, changes: Iterable[ValueChange]) -> Iterato
     for path, values in insertions.items():
         holder, missing_keys = find_holder(parsed, path)
         if missing_keys and missing_keys[0] in holder.entries:
-            msg = (
+            raise CannotInsertError(
                 f"`{missing_keys[0]}` is not a mapping that is written out ({holder.entries[missing_keys[0]].key_span})"
             )
-            raise CannotInsertError(msg)
         new_values = values
         for key in reversed(missing_keys):
             new_values = {key: new_values}
@@ -104,8 +102,7 @@ def _list_splices(parsed: ParsedText, changes: Iterable[ValueChange]) -> Iterato
 def _find_replacement(parsed: ParsedText, entry: MappingEntry, change: ValueChange) -> _Splice:
     span = entry.value.span
     if parsed.text_from(entry.value).startswith("*") or span.end_line != span.line:
-        msg = f"`{entry.key}` is not written as a plain value on one line ({entry.key_span})"
-        raise CannotInsertError(msg)
+        raise CannotInsertError(f"`{entry.key}` is not written as a plain value on one line ({entry.key_span})")
     value_text = format_flow(change.value)
     end = parsed.offset_of(span.end_line, span.end_column)
     if change.replaced_key is None:
@@ -117,8 +114,7 @@ def _find_removal(parsed: ParsedText, holder: MappingNode, entry: MappingEntry) 
     """Return an entry with what separates it from the next one, or with its line."""
     if not parsed.text_from(holder).startswith("{"):
         if entry.value.span.end_line != entry.key_span.line:
-            msg = f"`{entry.key}` is written on several lines ({entry.key_span})"
-            raise CannotInsertError(msg)
+            raise CannotInsertError(f"`{entry.key}` is written on several lines ({entry.key_span})")
         line = entry.key_span.line
         return parsed.offset_of(line, 1), parsed.offset_of(line, 1) + len(parsed.lines[line - 1]), ""
     entries = list(holder)
@@ -144,8 +140,7 @@ def _find_insertion(parsed: ParsedText, holder: MappingNode, entry_texts: Sequen
         entry for entry in entries if entry.value.span.end_line == entry.key_span.line == entry.value.span.line
     ]
     if not entries:
-        msg = f"nothing stands there yet ({holder.span})"
-        raise CannotInsertError(msg)
+        raise CannotInsertError(f"nothing stands there yet ({holder.span})")
     anchor = short_entries[-1] if short_entries else entries[0]
     line = anchor.key_span.line + (1 if short_entries else 0)
     position = parsed.offset_of(line, 1)

@@ -79,11 +79,9 @@ def make_file_tree(files: Iterable[tuple[str, bytes]]) -> FileTree:
     folded_paths: set[str] = set()
     for path, data in files:
         if not is_safe_path(path) or path == TREE_MANIFEST:
-            msg = f"{path!r} is no safe name for an output file"
-            raise ValueError(msg)
+            raise ValueError(f"{path!r} is no safe name for an output file")
         if path.casefold() in folded_paths:
-            msg = f"two output files are called {path!r}"
-            raise ValueError(msg)
+            raise ValueError(f"two output files are called {path!r}")
         folded_paths.add(path.casefold())
         held_files.add_file(path, data)
     held_files.places = dict(sorted(held_files.places.items()))
@@ -151,8 +149,7 @@ def write_file(path: Path, data: bytes) -> None:
     """
     with _explain_os_errors(path):
         if path.exists() and not path.is_file():
-            msg = f"{path} is not a regular file"
-            raise OutputError(msg, "give the name of a file with `-o`")
+            raise OutputError(f"{path} is not a regular file", "give the name of a file with `-o`")
         refusal = explain_refusal(path, data) if path.exists() else ""
         if refusal:
             raise OutputError(refusal, "nothing was changed; give another name with `-o`, or move that file away")
@@ -190,8 +187,7 @@ def lock_folder(folder: Path) -> Iterator[None]:
                     yield
                     return
             time.sleep(_SECONDS_BETWEEN_TRIES)
-        msg = f"another archgen is writing into {folder}"
-        raise OutputError(msg, "wait until it is done, and run this again")
+        raise OutputError(f"another archgen is writing into {folder}", "wait until it is done, and run this again")
     finally:
         with contextlib.suppress(OSError):
             for each in new_folders:
@@ -201,8 +197,7 @@ def lock_folder(folder: Path) -> Iterator[None]:
 def refuse_file(folder: Path) -> None:
     """Raise OutputError where a file stands in the place of a folder."""
     if folder.exists() and not folder.is_dir():
-        msg = f"{folder} is a file, not a folder"
-        raise OutputError(msg, "give another folder with `-o`")
+        raise OutputError(f"{folder} is a file, not a folder", "give another folder with `-o`")
 
 
 @contextlib.contextmanager
@@ -400,5 +395,4 @@ def _explain_os_errors(path: Path) -> Iterator[None]:
     try:
         yield
     except OSError as error:
-        msg = f"cannot write {path}: {error.strerror or error}"
-        raise OutputError(msg) from error
+        raise OutputError(f"cannot write {path}: {error.strerror or error}") from error

@@ -84,8 +84,7 @@ def _place_new_folder(
 def refuse_outside(folder: Path, top: Path) -> None:
     """Raise OutputError where a folder, which need not be there yet, is reached by a link that leads out of another one."""
     if not Path(os.path.realpath(folder)).is_relative_to(os.path.realpath(top)):
-        msg = f"{folder} is a link that leads out of {top}"
-        raise OutputError(msg, "nothing was written")
+        raise OutputError(f"{folder} is a link that leads out of {top}", "nothing was written")
 
 
 def _place_file(staged_file: Path, path: Path) -> None:

@@ -72,8 +72,7 @@ def convert_document(document: bytes, day: str = "") -> bytes:
             raise LibreOfficeError(message) from None
         target = source.with_suffix(".pdf")
         if not target.is_file():
-            message = "LibreOffice made no .pdf of the report; write the .docx, and print that"
-            raise LibreOfficeError(message)
+            raise LibreOfficeError("LibreOffice made no .pdf of the report; write the .docx, and print that")
         return replace_clock(target.read_bytes(), day).rstrip() + b"\n" + PDF_MARK
 
 

@@ -34,16 +34,14 @@ def unpack_template(data: bytes, program: str = "Word") -> dict[str, bytes]:
     Raise TemplateError if it is too large or no zip.
     """
     if data.startswith(_OLE_SIGNATURE):
-        message = f"the template is protected with a password or is {_OLD_FORMATS[program]}"
-        raise TemplateError(message)
+        raise TemplateError(f"the template is protected with a password or is {_OLD_FORMATS[program]}")
     try:
         with zipfile.ZipFile(io.BytesIO(data)) as archive:
             return _read_bounded_parts(archive)
     except TemplateError:
         raise
     except _ZIP_ERRORS as error:
-        message = f"the template is no {program} file: it cannot be opened as a package ({error})"
-        raise TemplateError(message) from None
+        raise TemplateError(f"the template is no {program} file: it cannot be opened as a package ({error})") from None
 
 
 def parse_part(data: bytes, name: str) -> etree._Element:
@@ -54,8 +52,7 @@ def parse_part(data: bytes, name: str) -> etree._Element:
     try:
         root = etree.fromstring(data, parser)
     except (etree.XMLSyntaxError, ValueError) as error:
-        message = f"the template is damaged: its part `{name}` is not well-formed XML ({error})"
-        raise TemplateError(message) from None
+        raise TemplateError(f"the template is damaged: its part `{name}` is not well-formed XML ({error})") from None
     # python-docx leaves entities unresolved too, but a part that needs them would lose its text without a word.
     if root.getroottree().docinfo.internalDTD is not None:
         message = f"the template is refused: its part `{name}` declares a document type, which no office writes"
@@ -67,8 +64,7 @@ def _read_bounded_parts(archive: zipfile.ZipFile) -> dict[str, bytes]:
     """Return all parts, but never more than such a file can sensibly hold."""
     entries = [entry for entry in archive.infolist() if not entry.is_dir()]
     if len(entries) > _MAX_PARTS:
-        message = f"the template is refused: it has {len(entries)} parts, more than {_MAX_PARTS}"
-        raise TemplateError(message)
+        raise TemplateError(f"the template is refused: it has {len(entries)} parts, more than {_MAX_PARTS}")
     parts: dict[str, bytes] = {}
     remaining = _MAX_BYTES
     for entry in entries:
@@ -77,8 +73,7 @@ def _read_bounded_parts(archive: zipfile.ZipFile) -> dict[str, bytes]:
             content = stream.read(remaining + 1)
         remaining -= len(content)
         if remaining < 0:
-            message = f"the template is refused: unpacked it is larger than {_MAX_BYTES // 1_000_000} MB"
-            raise TemplateError(message)
+            raise TemplateError(f"the template is refused: unpacked it is larger than {_MAX_BYTES // 1_000_000} MB")
         parts[entry.filename.lstrip("/")] = content
     return parts
 
@@ -87,14 +82,12 @@ def read_content_types(parts: dict[str, bytes], program: str = "Word") -> dict[s
     """Take the content types out of the parts; return the type of each part by its name. Refuse macros."""
     listing = parts.pop(_CONTENT_TYPES, None)
     if listing is None:
-        message = f"the template is no {program} file: it is a zip file without `{_CONTENT_TYPES}`"
-        raise TemplateError(message)
+        raise TemplateError(f"the template is no {program} file: it is a zip file without `{_CONTENT_TYPES}`")
     root = parse_part(listing, _CONTENT_TYPES)
     if any(sign in item.get("ContentType", "") for item in root for sign in _MACRO_SIGNS):
-        message = (
+        raise TemplateError(
             f"the template is refused: it holds macros or controls; save it as {_SAFE_FORMATS[program]} without them"
         )
-        raise TemplateError(message)
     endings = {
         item.get("Extension", "").lower(): item.get("ContentType", "") for item in root.iterfind(f"{_TYPES}Default")
     }

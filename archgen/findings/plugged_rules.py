@@ -50,8 +50,7 @@ def _load_rules(entry: PluginEntry) -> Iterator[PluggedRule]:
 
 
 def _refuse(entry: PluginEntry, problem: str) -> None:
-    msg = f"the rules `{entry.name}` of {entry.origin} cannot be used: {problem}"
-    raise PluginRefusedError(msg)
+    raise PluginRefusedError(f"the rules `{entry.name}` of {entry.origin} cannot be used: {problem}")
 
 
 def refuse_taken_names(plugged_rules: Iterable[PluggedRule], taken: Iterable[str]) -> None:

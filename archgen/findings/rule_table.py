@@ -19,8 +19,7 @@ def index_rules(rules: Iterable[Rule]) -> Mapping[str, Rule]:
     rule_by_name: dict[str, Rule] = {}
     for rule in sorted(rules, key=lambda rule: rule.name):
         if rule.name in rule_by_name:
-            msg = f"two rules are called {rule.name}"
-            raise ValueError(msg)
+            raise ValueError(f"two rules are called {rule.name}")
         rule_by_name[rule.name] = rule
     return rule_by_name
 

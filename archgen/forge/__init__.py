@@ -30,5 +30,4 @@ def _find_target(environment: Mapping[str, str]) -> CommentTarget:
         return find_merge_request(environment)
     if environment.get("GITHUB_ACTIONS"):
         return find_pull_request(environment)
-    msg = "this is no job of GitHub Actions or GitLab CI: neither GITHUB_ACTIONS nor GITLAB_CI is set"
-    raise ForgeError(msg)
+    raise ForgeError("this is no job of GitHub Actions or GitLab CI: neither GITHUB_ACTIONS nor GITLAB_CI is set")

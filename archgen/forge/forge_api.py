@@ -48,11 +48,9 @@ class ForgeApi:
         try:
             url_parts = urlsplit(self.url)
         except ValueError as error:
-            msg = f"the API's address {self.url!r} is no address: {error}"
-            raise ForgeError(msg) from None
+            raise ForgeError(f"the API's address {self.url!r} is no address: {error}") from None
         if url_parts.scheme != "https" and not (url_parts.scheme == "http" and url_parts.hostname in _LOOPBACK_HOSTS):
-            msg = f"the API's address {self.url!r} does not begin with https://"
-            raise ForgeError(msg)
+            raise ForgeError(f"the API's address {self.url!r} does not begin with https://")
 
     def list_items(self, path: str, noun: str) -> Iterator[Any]:
         """Yield the items of a list, page after page; `noun` says in an error what there are too many of. Raise ForgeError."""
@@ -60,14 +58,12 @@ class ForgeApi:
         for page in range(1, _MAX_PAGES + 1):
             items = self.send_request("GET", f"{path}{separator}per_page={_PAGE_SIZE}&page={page}")
             if not isinstance(items, list):
-                msg = f"the list of {noun} is no list"
-                raise ForgeError(msg)
+                raise ForgeError(f"the list of {noun} is no list")
             yield from items
             # A short page is the last one; the Link header is not needed.
             if len(items) < _PAGE_SIZE:
                 return
-        msg = f"there are more than {_MAX_PAGES * _PAGE_SIZE:,} {noun}"
-        raise ForgeError(msg)
+        raise ForgeError(f"there are more than {_MAX_PAGES * _PAGE_SIZE:,} {noun}")
 
     def send_request(self, method: str, path: str, body: Mapping[str, Any] | None = None) -> Any:  # noqa: ANN401 - JSON
         """Send one request and return its answer as plain data. Raise ForgeError."""
@@ -79,14 +75,11 @@ class ForgeApi:
                 return json.loads(answer.read(_MAX_ANSWER_BYTES))
         except HTTPError as error:
             error.close()  # it holds the connection
-            msg = f"{method} {path} was answered with {error.code} {error.reason}"
-            raise ForgeError(msg, error.code) from None
+            raise ForgeError(f"{method} {path} was answered with {error.code} {error.reason}", error.code) from None
         except (URLError, TimeoutError, HTTPException) as error:
-            msg = f"{method} {path} got no answer: {getattr(error, 'reason', error)}"
-            raise ForgeError(msg) from None
+            raise ForgeError(f"{method} {path} got no answer: {getattr(error, 'reason', error)}") from None
         except (ValueError, RecursionError):
-            msg = f"{method} {path} was answered with something that is no JSON"
-            raise ForgeError(msg) from None
+            raise ForgeError(f"{method} {path} was answered with something that is no JSON") from None
 
 
 T = TypeVar("T")
@@ -113,6 +106,5 @@ def run_within(seconds: float, function: Callable[[], T]) -> T:
     if errors:
         raise errors[0]
     if not results:
-        msg = f"no answer within {seconds:g} s"
-        raise ForgeError(msg)
+        raise ForgeError(f"no answer within {seconds:g} s")
     return results[0]

@@ -38,13 +38,11 @@ class CommentTarget:
 def put_comment(target: CommentTarget, text: str, key: str, *, creates: bool = True) -> CommentOutcome:
     """Update our comment of this key, or create it unless `creates` is False. Raise ForgeError."""
     if not _KEY_PATTERN.fullmatch(key):
-        msg = f"the key {key!r} may hold letters, digits, `_`, `.`, `/` and `-` only"
-        raise ForgeError(msg)
+        raise ForgeError(f"the key {key!r} may hold letters, digits, `_`, `.`, `/` and `-` only")
     marker = f"<!-- archgen: {key} -->"
     body = f"{marker}\n{text.strip()}\n"
     if len(body) > target.max_length:
-        msg = f"the text has {len(body):,} characters, a comment takes {target.max_length:,}"
-        raise ForgeError(msg)
+        raise ForgeError(f"the text has {len(body):,} characters, a comment takes {target.max_length:,}")
     for comment in _own_comments(target):
         old_body = comment.get("body")
         if not isinstance(old_body, str) or old_body.split("\n", 1)[0].rstrip("\r") != marker:
@@ -102,8 +100,7 @@ def find_target_branch(environment: Mapping[str, str] = os.environ) -> str:
     """Return the branch that the job runs for. Raise ForgeError."""
     branch = environment.get("CI_COMMIT_BRANCH" if environment.get("GITLAB_CI") else "GITHUB_REF_NAME", "")
     if not branch:
-        msg = "neither GITHUB_REF_NAME nor CI_COMMIT_BRANCH says which branch this job runs for"
-        raise ForgeError(msg)
+        raise ForgeError("neither GITHUB_REF_NAME nor CI_COMMIT_BRANCH says which branch this job runs for")
     return branch
 
 
@@ -151,12 +148,10 @@ def open_github(environment: Mapping[str, str]) -> tuple[ForgeApi, str]:
     token = environment.get("GITHUB_TOKEN") or environment.get("GH_TOKEN")
     repository = environment.get("GITHUB_REPOSITORY", "")
     if not token:
-        msg = "GITHUB_TOKEN is not set: pass `${{ github.token }}` to this step"
-        raise ForgeError(msg)
+        raise ForgeError("GITHUB_TOKEN is not set: pass `${{ github.token }}` to this step")
     # It becomes a part of the URL: nothing but a name may get there.
     if not re.fullmatch(r"[\w.-]+/[\w.-]+", repository):
-        msg = "GITHUB_REPOSITORY names no repository"
-        raise ForgeError(msg)
+        raise ForgeError("GITHUB_REPOSITORY names no repository")
     headers = {"Authorization": f"Bearer {token}", "X-GitHub-Api-Version": "2022-11-28"}
     return ForgeApi(environment.get("GITHUB_API_URL", "https://api.github.com"), headers), repository
 
@@ -181,8 +176,7 @@ def _find_number(environment: Mapping[str, str], api: ForgeApi, repository: str)
             return _find_reviewed_number(event["workflow_run"], api, repository)
         return int(event["pull_request"]["number"])
     except (KeyError, OSError, ValueError, TypeError):
-        msg = "the event that started this job is no pull request"
-        raise ForgeError(msg) from None
+        raise ForgeError("the event that started this job is no pull request") from None
 
 
 def _find_reviewed_number(workflow_run: Mapping[str, Any], api: ForgeApi, repository: str) -> int:
@@ -220,8 +214,7 @@ def find_merge_request(environment: Mapping[str, str]) -> CommentTarget:
     api = open_gitlab(environment)
     number = environment.get("CI_MERGE_REQUEST_IID", "")
     if not (number.isascii() and number.isdecimal()):
-        msg = "this job runs for no merge request"
-        raise ForgeError(msg)
+        raise ForgeError("this job runs for no merge request")
     # A fork's pipeline runs in the fork, whose merge requests are others.
     project = environment.get("CI_MERGE_REQUEST_PROJECT_ID") or environment.get("CI_PROJECT_ID", "")
     return _target_merge_request(api, _require_number(project), int(number))
@@ -231,10 +224,9 @@ def open_gitlab(environment: Mapping[str, str]) -> ForgeApi:
     """Return GitLab's API with ARCHGEN_TOKEN, a project access token with the scope `api`."""
     token = environment.get("ARCHGEN_TOKEN")
     if not token:
-        msg = (
+        raise ForgeError(
             "ARCHGEN_TOKEN is not set: a job's own token cannot write comments, a project access token (scope api) can"
         )
-        raise ForgeError(msg)
     return ForgeApi(environment.get("CI_API_V4_URL", "https://gitlab.com/api/v4"), {"PRIVATE-TOKEN": token})
 
 
@@ -245,8 +237,7 @@ def find_gitlab_project(environment: Mapping[str, str]) -> str:
 
 def _require_number(text: str) -> str:
     if not (text.isascii() and text.isdecimal()):
-        msg = "this job runs for no merge request: CI_PROJECT_ID names no project"
-        raise ForgeError(msg)
+        raise ForgeError("this job runs for no merge request: CI_PROJECT_ID names no project")
     return text
 
 
@@ -254,6 +245,5 @@ def _target_merge_request(api: ForgeApi, project: str, number: int) -> CommentTa
     notes = f"/projects/{project}/merge_requests/{number}/notes"
     user = api.send_request("GET", "/user")
     if not isinstance(user, dict) or "id" not in user:
-        msg = "GitLab does not say whose token this is"
-        raise ForgeError(msg)
+        raise ForgeError("GitLab does not say whose token this is")
     return CommentTarget(api, notes, notes, "PUT", ("author", "id", user["id"]), MAX_NOTE_LENGTH)

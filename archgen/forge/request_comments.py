@@ -9,7 +9,7 @@ from typing import Any
 
 from archgen.diagnostics import format_json, join_words
 from archgen.emit.markdown.comment_sentences import write_code, write_sentence, write_title
-from archgen.emit.markdown.limited_comment import MAX_COMMENT_SIZE, LimitedComment
+from archgen.emit.markdown.comparison_markdown import MAX_COMMENT_SIZE, LimitedComment
 from archgen.forge.forge_api import ForgeError, run_within
 from archgen.forge.pull_request import CommentOutcome, OpenRequest, find_request, put_comment
 from archgen.frozen import NamedTuple
@@ -106,8 +106,7 @@ def read_request_comments(text: str) -> tuple[RequestComment, ...]:
         comments = None
     # A number becomes a part of an address.
     if comments is None or any([*map(type, comment)] != [int, str, bool] for comment in comments):
-        msg = "these are no comments that `archgen check-requests -o` wrote"
-        raise ForgeError(msg)
+        raise ForgeError("these are no comments that `archgen check-requests -o` wrote")
     return comments
 
 

@@ -9,7 +9,7 @@ What only a merge or an editor needs is imported from its module, so that `archg
 
 from archgen.git.branch_base import BaseCommit, find_branch_base, find_common_commit, find_unpushed_base
 from archgen.git.commit_log import find_object_ids, list_first_parents
-from archgen.git.git_errors import GitError, NoCommitsError, NoRepositoryError, ShallowError, UnknownRevisionError
+from archgen.git.git_call import GitError, NoCommitsError, NoRepositoryError, ShallowError, UnknownRevisionError
 from archgen.git.object_reader import GitObjects, TreeEntry
 from archgen.git.repository_lookup import (
     GitRepository,

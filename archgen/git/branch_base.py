@@ -3,8 +3,7 @@
 from __future__ import annotations
 
 from archgen.frozen import NamedTuple
-from archgen.git.git_call import run_git
-from archgen.git.git_errors import GitError, ShallowError
+from archgen.git.git_call import GitError, ShallowError, run_git
 from archgen.git.repository_lookup import UNSHALLOW_HINT, GitRepository, look_up_commit, resolve_revision
 
 _MAIN_LINES = ("main", "master", "origin/main", "origin/master")
@@ -32,8 +31,7 @@ def find_branch_base(repository: GitRepository, setting: str | None = None) -> B
     if branch and main_line in {branch, f"origin/{branch}"}:
         return BaseCommit(head_commit, "HEAD")
     if not main_line and repository.is_shallow:
-        msg = f"this shallow clone holds no main line to compare with: {UNSHALLOW_HINT}"
-        raise ShallowError(msg)
+        raise ShallowError(f"this shallow clone holds no main line to compare with: {UNSHALLOW_HINT}")
     commit = find_common_commit(repository, main_line, "HEAD").commit_id if main_line else head_commit
     return BaseCommit(commit, "HEAD" if commit == head_commit else f"where this branch left {main_line}")
 
@@ -56,8 +54,7 @@ def find_common_commit(repository: GitRepository, left: str, right: str) -> Base
     if repository.is_shallow:
         msg = f"the commit at which `{right}` left `{left}` is not in this shallow clone: {UNSHALLOW_HINT}"
         raise ShallowError(msg)
-    msg = f"`{left}` and `{right}` have no commit in common: name the revision to compare with"
-    raise GitError(msg)
+    raise GitError(f"`{left}` and `{right}` have no commit in common: name the revision to compare with")
 
 
 def list_common_commits(repository: GitRepository, left: str, right: str) -> list[str]:

@@ -7,7 +7,27 @@ from collections.abc import Mapping
 from pathlib import Path
 
 from archgen.frozen import NamedTuple
-from archgen.git.git_errors import GitError
+
+
+class GitError(Exception):
+    """git cannot deliver what was asked for."""
+
+
+class NoRepositoryError(GitError):
+    """There is no repository, or git refuses to read it."""
+
+
+class NoCommitsError(GitError):
+    """Nothing has been committed yet."""
+
+
+class UnknownRevisionError(GitError):
+    """No commit has this name."""
+
+
+class ShallowError(GitError):
+    """The commit is not here because the clone is shallow."""
+
 
 SAFE_COMMAND = (
     "git",
@@ -89,8 +109,7 @@ def read_git_output(folder: Path, *arguments: str, max_bytes: int) -> bytes | No
             output = process.stdout.read(max_bytes + 1) if process.stdout else b""
             if len(output) > max_bytes:
                 process.kill()
-                msg = f"git prints more than {max_bytes:,} bytes"
-                raise GitOutputError(msg)
+                raise GitOutputError(f"git prints more than {max_bytes:,} bytes")
         finally:
             alarm.cancel()
     return None if process.returncode else output

@@ -13,8 +13,7 @@ from contextlib import contextmanager
 from pathlib import Path
 
 from archgen.frozen import dataclass
-from archgen.git.git_call import GitResult, run_git
-from archgen.git.git_errors import GitError
+from archgen.git.git_call import GitError, GitResult, run_git
 from archgen.git.object_reader import GitObjects
 from archgen.git.repository_lookup import GitRepository, list_cut_commits
 
@@ -90,8 +89,7 @@ class MergeFolder:
     def _run_checked(self, *words: str, stdin: bytes = b"") -> GitResult:
         result = self._run(*words, stdin=stdin)
         if result.status:
-            msg = f"git cannot merge here: {result.error_text}"
-            raise GitError(msg)
+            raise GitError(f"git cannot merge here: {result.error_text}")
         return result
 
 
@@ -123,8 +121,7 @@ def open_merge_folder(repository: GitRepository) -> Iterator[MergeFolder]:
     """Make a repository that borrows all objects of another one; it is gone afterwards. Raise GitError."""
     paths = run_git(repository.top, "rev-parse", "--git-path", "objects", "--show-object-format")
     if paths.status:
-        msg = f"the repository cannot be read: {paths.error_text}"
-        raise GitError(msg)
+        raise GitError(f"the repository cannot be read: {paths.error_text}")
     objects, object_format = paths.text.splitlines()
     with tempfile.TemporaryDirectory(prefix="archgen-") as name:
         # Called as the real one: a project without an id takes the folder's name.
@@ -144,3 +141,36 @@ def open_merge_folder(repository: GitRepository) -> Iterator[MergeFolder]:
         if cut_commits:
             (folder / "shallow").write_text("".join(f"{commit}\n" for commit in cut_commits), "ascii")
         yield MergeFolder(folder, repository)
+
+
+_MAX_CONFLICTS = 127
+"""`git merge-file` ends with the number of conflicts, at most this, and with more where it fails."""
+
+
+@dataclass(frozen=True, slots=True)
+class LineMerge:
+    """Merged lines, with git's markers round each conflict."""
+
+    content: bytes
+    conflict_count: int
+
+
+def merge_lines(
+    base: bytes, ours: bytes, theirs: bytes, *, marker_size: int = 7, shows_base: bool = False
+) -> LineMerge:
+    """Merge what changed between `base` and `theirs` into `ours`. Raise GitError for what git takes for binary.
+
+    With `shows_base` each conflict also shows what stood there before.
+    """
+    labels = ("-L", "ours", "-L", "base", "-L", "theirs")
+    style = ("--diff3",) if shows_base else ()
+    with tempfile.TemporaryDirectory(prefix="archgen-") as folder_name:
+        folder = Path(folder_name)
+        for name, content in (("ours", ours), ("base", base), ("theirs", theirs)):
+            (folder / name).write_bytes(content)
+        result = run_git(
+            folder, "merge-file", "-p", *style, f"--marker-size={marker_size}", *labels, "ours", "base", "theirs"
+        )
+    if result.status > _MAX_CONFLICTS or result.status < 0:
+        raise GitError(f"git cannot merge these texts: {result.error_text}")
+    return LineMerge(result.output, result.status)

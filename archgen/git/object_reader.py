@@ -8,8 +8,15 @@ import weakref
 from typing import IO, TYPE_CHECKING
 
 from archgen.frozen import NamedTuple
-from archgen.git.git_call import ANSWER_SECONDS, SAFE_COMMAND, GitOutputError, git_environment, read_git_output, run_git
-from archgen.git.git_errors import GitError
+from archgen.git.git_call import (
+    ANSWER_SECONDS,
+    SAFE_COMMAND,
+    GitError,
+    GitOutputError,
+    git_environment,
+    read_git_output,
+    run_git,
+)
 from archgen.git.repository_lookup import GitRepository
 
 if TYPE_CHECKING:
@@ -55,8 +62,7 @@ class GitObjects:
         except GitOutputError:
             place = f"below `{prefix}` " if prefix else ""
             msg = f"the commit {commit[:10]} holds more files {place}than a project may have: their list is longer than"
-            msg = f"{msg} {MAX_LIST_BYTES // 1_000_000} MB"
-            raise GitError(msg) from None
+            raise GitError(f"{msg} {MAX_LIST_BYTES // 1_000_000} MB") from None
         if output is None:
             if self._has_folder(commit, prefix):
                 msg = f"the commit {commit[:10]} cannot be read: the repository is damaged (`git fsck` says where)"

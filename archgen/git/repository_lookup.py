@@ -7,8 +7,7 @@ from pathlib import Path
 
 from archgen.diagnostics import did_you_mean
 from archgen.frozen import dataclass
-from archgen.git.git_call import run_git
-from archgen.git.git_errors import NoCommitsError, NoRepositoryError, ShallowError, UnknownRevisionError
+from archgen.git.git_call import NoCommitsError, NoRepositoryError, ShallowError, UnknownRevisionError, run_git
 
 UNSHALLOW_HINT = "fetch what is missing with `git fetch --unshallow` (in a workflow: `fetch-depth: 0`)"
 
@@ -99,11 +98,9 @@ def resolve_revision(repository: GitRepository, revision: str) -> str:
         msg = "nothing was committed in this repository yet: commit once, then there is something to compare with"
         raise NoCommitsError(msg)
     if repository.is_shallow:
-        msg = f"there is no revision `{revision}` in this shallow clone: {UNSHALLOW_HINT}"
-        raise ShallowError(msg)
+        raise ShallowError(f"there is no revision `{revision}` in this shallow clone: {UNSHALLOW_HINT}")
     suggestion = did_you_mean(revision, known_names) or "branches, tags and hashes are revisions"
-    msg = f"there is no revision `{revision}`: {suggestion}"
-    raise UnknownRevisionError(msg)
+    raise UnknownRevisionError(f"there is no revision `{revision}`: {suggestion}")
 
 
 def look_up_commit(repository: GitRepository, revision: str) -> str:

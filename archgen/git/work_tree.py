@@ -9,8 +9,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from pathlib import Path
 
-from archgen.git.git_call import GitResult, run_git
-from archgen.git.git_errors import GitError
+from archgen.git.git_call import GitError, GitResult, run_git
 from archgen.git.merged_trees import MergeFolder, PathConflict
 from archgen.git.repository_lookup import GitRepository, resolve_revision
 
@@ -26,12 +25,10 @@ _UNDER_WAY = {
 def refuse_unready(repository: GitRepository) -> None:
     """Raise GitError where a merge would meet what is not committed, or another one that is under way."""
     if repository.is_bare:
-        msg = "there is no work tree here: merge in a clone"
-        raise GitError(msg)
+        raise GitError("there is no work tree here: merge in a clone")
     for name, (what, way_out) in _UNDER_WAY.items():
         if _git_path(repository, name).exists():
-            msg = f"a {what} is under way: {way_out}"
-            raise GitError(msg)
+            raise GitError(f"a {what} is under way: {way_out}")
     status = _run(repository, "status", "--porcelain", "-z", "--untracked-files=no", "--ignore-submodules=dirty")
     changed = [entry[3:] for entry in status.text.split("\0") if entry]
     if changed:
@@ -84,6 +81,11 @@ def _run(repository: GitRepository, *words: str, stdin: bytes = b"") -> GitResul
     if result.status:
         lines = (line.strip().removeprefix("error: ") for line in result.error_text.splitlines())
         reasons = [line for line in lines if line and not line.startswith("hint:")]
-        msg = f"git does not merge here: {' '.join(reasons[:2]) or f'`git {words[0]}` fails'}"
-        raise GitError(msg)
+        raise GitError(f"git does not merge here: {' '.join(reasons[:2]) or f'`git {words[0]}` fails'}")
     return result
+
+
+def ignores_file(folder: Path, name: str) -> bool:
+    """Whether git ignores a file that is in a folder. It does not where it keeps the file, and outside of a repository."""
+    # Not `check-ignore`, which refuses to take names literally.
+    return bool(run_git(folder, "ls-files", "--others", "--ignored", "--exclude-standard", "--", name).output)

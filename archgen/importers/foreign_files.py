@@ -126,8 +126,7 @@ class XmlEvents:
         return ForeignFileError(message, Span(self.file, line, column, line, column + 1), help_line)
 
     def _refuse_doctype(self, *_: object) -> None:
-        words = "it declares a document type or entities, which archgen does not follow"
-        raise self.refuse(words, self.doctype_help)
+        raise self.refuse("it declares a document type or entities, which archgen does not follow", self.doctype_help)
 
 
 class _TreeBuilder(XmlEvents):
@@ -164,12 +163,10 @@ class _TreeBuilder(XmlEvents):
         elif self._root is None:
             self._root, self.is_root_seen = element, True
         if len(self._open) >= MAX_DEPTH:
-            words = f"its elements nest deeper than {MAX_DEPTH}"
-            raise self.refuse(words, "no model does: export it again")
+            raise self.refuse(f"its elements nest deeper than {MAX_DEPTH}", "no model does: export it again")
         self._count += 1
         if self._count > MAX_ELEMENTS:
-            words = f"it has more than {MAX_ELEMENTS:,} elements"
-            raise self.refuse(words, "export the model in parts")
+            raise self.refuse(f"it has more than {MAX_ELEMENTS:,} elements", "export the model in parts")
         self._open.append((element, namespaces, []))
 
     def add_text(self, text: str) -> None:

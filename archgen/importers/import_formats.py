@@ -90,8 +90,7 @@ def _refuse_facts(entry: PluginEntry, facts: Mapping[str, Any], formats: Mapping
         problem = f"{formats[entry.name].origin or 'archgen'} has a format of this name already"
     else:
         return
-    msg = f"the importer `{entry.name}` of {entry.origin} cannot be used: {problem}"
-    raise PluginRefusedError(msg)
+    raise PluginRefusedError(f"the importer `{entry.name}` of {entry.origin} cannot be used: {problem}")
 
 
 def guess_format(file: Path, formats: Mapping[str, ImportFormat]) -> ImportFormat | None:

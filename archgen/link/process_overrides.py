@@ -210,5 +210,4 @@ def require_value(key: str, text: str, parsed_value: object | None, expected: st
     if parsed_value is not None:
         return parsed_value
     digits_hint = "; that has too many digits" if sum(map(str.isdigit, text)) > _MAX_COUNT_DIGITS else ""
-    msg = f"`{key}` takes {expected}, not `{text}`{digits_hint}"
-    raise OverrideError(msg)
+    raise OverrideError(f"`{key}` takes {expected}, not `{text}`{digits_hint}")

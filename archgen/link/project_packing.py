@@ -173,8 +173,7 @@ def _declare_elements(project_data: Mapping[str, object], root: MappingNode, arc
 def _get_dict(data: Mapping[str, object], key: str) -> dict[str, object]:
     value = data[key]
     if not isinstance(value, dict):
-        message = f"`{key}` holds no mapping"
-        raise TypeError(message)
+        raise TypeError(f"`{key}` holds no mapping")
     return value
 
 

@@ -83,11 +83,10 @@ def read_override(architecture: Architecture, text: str) -> tuple[TimingOverride
         return (process_override,)
     element, key = _split_path(path.strip())
     if not equals or not element:
-        msg = (
+        raise OverrideError(
             f"`{text}` is not ELEMENT.timing.KEY=VALUE, for instance object_recognizer.timing.wcet=120ms, nor "
             "ELEMENT.KEY=VALUE, for instance sensor_box.threads=2"
         )
-        raise OverrideError(msg)
     if not _is_key(key):
         guess = did_you_mean(key, OVERRIDE_KEYS)
         msg = f"`timing` has no key `{key}` that can be set" + (
@@ -104,8 +103,7 @@ def read_override(architecture: Architecture, text: str) -> tuple[TimingOverride
     if not overrides:
         input_name = key.removeprefix("inputs.").rpartition(".")[0] if key != "trigger" else value.strip(" []")
         names = [port.name for port in architecture.inputs.values()]
-        msg = f"`{element}` has no input `{input_name}`; {did_you_mean(input_name, names) or NAMES_HELP}"
-        raise OverrideError(msg)
+        raise OverrideError(f"`{element}` has no input `{input_name}`; {did_you_mean(input_name, names) or NAMES_HELP}")
     return overrides
 
 
@@ -131,8 +129,7 @@ def _complete_key(architecture: Architecture, component: str, key: str) -> str |
     if match["resource"]:
         if match["resource"] not in architecture.resources:
             guess = did_you_mean(match["resource"], architecture.resources)
-            msg = f"no resource is called `{match['resource']}`; {guess or NAMES_HELP}"
-            raise OverrideError(msg)
+            raise OverrideError(f"no resource is called `{match['resource']}`; {guess or NAMES_HELP}")
         return key
     port = f"{component}.{match['input'].rpartition('.')[2]}"
     is_meant = port in architecture.inputs and f".{port}".endswith(f".{match['input']}")
@@ -239,8 +236,7 @@ def _find_component_activity(architecture: Architecture, element: str) -> tuple[
         return _list_instance_activities(architecture, element)
     if not components and element in architecture.shells:
         leaves = ", ".join(architecture.leaves_of(element)[:6])
-        msg = f"`{element}` is composed: name a component inside ({leaves})"
-        raise OverrideError(msg)
+        raise OverrideError(f"`{element}` is composed: name a component inside ({leaves})")
     if len(components) != 1:
         names = [*architecture.nodes, *architecture.components, *architecture.component_types]
         guess = did_you_mean(element, [candidate for name in names for candidate in (name, name.rpartition(".")[2])])
@@ -250,8 +246,7 @@ def _find_component_activity(architecture: Architecture, element: str) -> tuple[
         raise OverrideError(message if components else f"{message}; {guess or NAMES_HELP}")
     nodes: list[Node] = list(architecture.nodes_implementing(components[0]))
     if not nodes:
-        msg = f"no node implements `{components[0]}`: its timing counts nowhere"
-        raise OverrideError(msg)
+        raise OverrideError(f"no node implements `{components[0]}`: its timing counts nowhere")
     if len(nodes) != 1:
         names = [node.id for node in nodes]
         msg = f"{len(nodes)} nodes implement `{components[0]}`: name one of them ({', '.join(names[:6])})"
@@ -271,8 +266,7 @@ def _list_instance_activities(architecture: Architecture, type_name: str) -> tup
         reason = (
             "no node implements one of its instances" if instances else "it has no instance without components inside"
         )
-        msg = f"`{type_name}` is a component type, and {reason}: its timing counts nowhere"
-        raise OverrideError(msg)
+        raise OverrideError(f"`{type_name}` is a component type, and {reason}: its timing counts nowhere")
     return activities
 
 
@@ -297,8 +291,6 @@ def _check_bounds(node_id: str, timing: Timing) -> None:
     bounds += [(f"uses.{resource}", each.min, each.max) for resource, each in timing.uses.items()]
     for name, least, most in bounds:
         if least is not None and most is not None and least.value > most.value:
-            msg = f"{node_id}: the shortest time of `{name}` ({least}) is above the longest ({most})"
-            raise OverrideError(msg)
+            raise OverrideError(f"{node_id}: the shortest time of `{name}` ({least}) is above the longest ({most})")
     if timing.deadline is not None and not timing.deadline.value:
-        msg = f"{node_id}: `deadline` cannot be zero"
-        raise OverrideError(msg)
+        raise OverrideError(f"{node_id}: `deadline` cannot be zero")

@@ -22,8 +22,7 @@ def plan_edits(project: EditedProject, element: Element, new_name: str) -> tuple
     if not project.is_whole:
         project.check_wholly()
     for error in project.warm.list_text_errors(project.checked):
-        message = f"line {error.span.line} of {error.span.file} cannot be read"
-        raise EditRefusedError(message, "mend it first")
+        raise EditRefusedError(f"line {error.span.line} of {error.span.file} cannot be read", "mend it first")
     version = JudgedVersion(project.checked, project.index, project.warm.cache)
     refactoring = plan_rename(version, element, new_name)
     return [edit for file_edit in refactoring.edits for edit in split_edit(file_edit)], refactoring.notes

@@ -10,7 +10,7 @@ from __future__ import annotations
 from typing import Any
 
 from archgen.frozen import dataclass
-from archgen.git.text_merge import merge_lines
+from archgen.git.merged_trees import merge_lines
 from archgen.merge.slice_merge import SliceVersions, UnmergedSlice, merge_slices
 from archgen.merge.slice_reading import read_tree, to_texts
 from archgen.merge.tree_merge import FIELD_ORDER

@@ -14,7 +14,7 @@ from functools import lru_cache
 
 from archgen.frozen import dataclass
 from archgen.git import GitError
-from archgen.git.text_merge import merge_lines
+from archgen.git.merged_trees import merge_lines
 from archgen.merge.change_transfer import rename_keys, transfer_changes
 from archgen.merge.renamed_keys import KeyRename, find_renames
 from archgen.merge.slice_reading import TreeReader, convert_lines, find_line_end, read_normal_tree, read_tree

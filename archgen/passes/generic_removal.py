@@ -135,7 +135,6 @@ class _DataTypeSpecialiser:
 
 
 def _names_type(path: TreePath) -> bool:
-    """Whether a scalar at a path is the name of a type."""
     key, holders = path[-1], [step for step in path[:-1] if isinstance(step, str)]
     in_types = path[0] == "types" or (path[0] == "libraries" and len(path) > 3 and path[2] == "types")  # noqa: PLR2004
     if in_types:

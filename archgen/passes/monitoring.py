@@ -59,7 +59,6 @@ class _MonitorWriter:
         return True
 
     def _is_type(self, path: TreePath) -> bool:
-        """Whether a path is that of a component type."""
         own_length = {"component_types": 2, "libraries": 4}
         return len(path) == own_length.get(str(path[0]), 0)
 

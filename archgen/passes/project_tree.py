@@ -93,8 +93,7 @@ class ProjectTree:
         if isinstance(key, int):
             sequence = self.get(path[:-1])
             if not isinstance(sequence, SequenceNode):
-                message = f"no list at {path[:-1]}"
-                raise TypeError(message)
+                raise TypeError(f"no list at {path[:-1]}")
             sequence.items[key] = node
         else:
             present_entry = holder.entries.get(key)
@@ -188,8 +187,7 @@ class ProjectTree:
         if isinstance(node, SequenceNode):
             return MappingNode({}, node.span), first_made
         if not isinstance(node, MappingNode):
-            message = f"no mapping at {path}"
-            raise TypeError(message)
+            raise TypeError(f"no mapping at {path}")
         return node, first_made
 
     def _replace(self, path: TreePath, node: YamlNode) -> None:

@@ -130,8 +130,7 @@ def parse_issue_date(text: str) -> str:
     except ValueError:
         is_day = False
     if not is_day:
-        msg = f"`{text}` is no date: write year, month and day, such as 2026-03-31"
-        raise ValueError(msg)
+        raise ValueError(f"`{text}` is no date: write year, month and day, such as 2026-03-31")
     return text
 
 
@@ -168,11 +167,9 @@ def _check_partners(checked_project: CheckedProject, first: str, second: str) ->
         if name not in partners:
             guess = did_you_mean(name, partners)
             available_names = ", ".join(list(partners)[:_MAX_LISTED]) + (", ..." if len(partners) > _MAX_LISTED else "")
-            msg = f"there is no partner `{name}`; {guess or f'there are {available_names}'}"
-            raise PartnersError(msg)
+            raise PartnersError(f"there is no partner `{name}`; {guess or f'there are {available_names}'}")
     if first == second:
-        msg = f"an agreement is between two partners, and `{first}` was given twice"
-        raise PartnersError(msg)
+        raise PartnersError(f"an agreement is between two partners, and `{first}` was given twice")
 
 
 def _explain_no_interfaces(checked_project: CheckedProject, first: str, second: str) -> str:
@@ -197,7 +194,6 @@ def _explain_no_interfaces(checked_project: CheckedProject, first: str, second: 
 
 
 def _error_notices(checked_project: CheckedProject, earlier_version: ProjectVersion | None) -> Iterator[Paragraph]:
-    """Yield a notice for each version that has errors."""
     for version_suffix, noticed_project in (
         ("", checked_project),
         *(((f" at {earlier_version.title}", earlier_version.checked_project),) if earlier_version else ()),

@@ -77,8 +77,7 @@ def prepare_signature(
         msg = f"`{strangers[0]}` is none of the two partners `{agreement.pair[0]}` and `{agreement.pair[1]}`"
         raise SigningError(msg)
     if unclear := [who for who in signers.values() if not who.strip() or who != make_visible(who)]:
-        msg = f'{unclear[0]!r} is no name that can stand in a line: write who signs, such as "M. Rossi"'
-        raise SigningError(msg)
+        raise SigningError(f'{unclear[0]!r} is no name that can stand in a line: write who signs, such as "M. Rossi"')
     repository = find_repository(checked_project.root)
     head = resolve_revision(repository, "HEAD")
     _refuse_uncommitted(checked_project, head, file)
@@ -87,11 +86,10 @@ def prepare_signature(
     earlier = agreement.signed
     if earlier and earlier.by and not agreement.binding_signature and set(earlier.by).isdisjoint(by):
         if (earlier.versions, earlier.terms, earlier.rules) != (versions, terms, RULES):
-            msg = (
+            raise SigningError(
                 f"`{next(iter(earlier.by))}` signed something else at `{earlier.tag}`: sign it there (`git checkout "
                 f"{earlier.tag}`), or let both sign what is here"
             )
-            raise SigningError(msg)
         by, revision = {**earlier.by, **by}, earlier.revision or head
     signature = Signature(
         RULES,
@@ -116,8 +114,7 @@ def record_signature(checked_project: CheckedProject, prepared: PreparedSignatur
     result = run_git(prepared.repository.top, "tag", "-a", "--no-sign", "-F", "-", tag, revision, stdin=message)
     if result.status:
         reason = result.error_text.removeprefix("fatal: ").partition("\n")[0]
-        msg = f"git makes no tag `{tag}`: {reason}"
-        raise GitError(msg)
+        raise GitError(f"git makes no tag `{tag}`: {reason}")
     target, text = checked_project.root / prepared.file, prepared.text.encode()
     try:
         file_tree.write_file(target, text)
@@ -133,11 +130,10 @@ def _refuse_uncommitted(checked_project: CheckedProject, head: str, own_file: st
     own_files = [each for each in sorted(files) if each == own_file or not is_signature_file(each)]
     changed = [each for each in own_files if differs_from_head(checked_project.root, [each])]
     if changed:
-        msg = (
+        raise SigningError(
             f"`{changed[0]}` is not as it was committed{f', nor are {len(changed) - 1} more' if changed[1:] else ''}: "
             "what is signed is a commit, so commit first"
         )
-        raise SigningError(msg)
 
 
 def _name_tag(repository: GitRepository, agreement_id: str, day: str) -> str:
@@ -162,8 +158,7 @@ def _write_text(agreement: Agreement, file: str, text: str) -> str:
     written, _, _ = _find_body(agreement.id, file, new_text)
     rest = "".join(lines[entry.value.span.end_line - 1 :])[entry.value.span.end_column - 1 :] if entry else ""
     if written is None or "signed" not in written.entries or any(each.strip(" \r\n") for each in rest.splitlines()[1:]):
-        msg = f"`{file}`: write the terms of `{agreement.id}` in block form, with nothing behind `signed`"
-        raise SigningError(msg)
+        raise SigningError(f"`{file}`: write the terms of `{agreement.id}` in block form, with nothing behind `signed`")
     return new_text
 
 

@@ -65,8 +65,7 @@ def _refuse_unusable(
     backend = backends_by_name.get(name)
     if backend is None or backend.emitter not in CALLED_EMITTERS:
         msg = f"there is no {'output' if other_outputs else 'text backend'} `{name}`"
-        listed_names = f"there are {', '.join(usable_names)}"
-        raise file_tree.OutputError(msg, did_you_mean(name, usable_names) or listed_names)
+        raise file_tree.OutputError(msg, did_you_mean(name, usable_names) or f"there are {', '.join(usable_names)}")
     if backend.makes != makes:
         msg = f"the backend `{name}` makes {_TARGET_PHRASES[backend.makes]}, not {_TARGET_PHRASES[makes]}"
         raise file_tree.OutputError(msg, f"`{_COMMANDS[backend.makes].format(name)}` makes it")

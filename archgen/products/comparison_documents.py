@@ -132,8 +132,7 @@ def render_comparison_svg(comparison: Comparison, options: OutputOptions) -> byt
     # The first graph is the functional one wherever there is one.
     picture: Picture | None = draw_or_warn(graphs[:1], ("svg",), options).get(graphs[0].id)
     if picture is None or picture.svg is None:
-        msg = "the picture could not be drawn"
-        raise file_tree.OutputError(msg)
+        raise file_tree.OutputError("the picture could not be drawn")
     # There is no page to link to: every link of the picture is dropped.
     return files.standalone_svg(picture.svg, lambda _anchor: None)
 

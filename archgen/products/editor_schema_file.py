@@ -45,8 +45,7 @@ def write_schema(checked_project: CheckedProject, target: Path | None = None) ->
     """
     path = target or checked_project.root / editor_schema_marks.SCHEMA_FILE
     if path.is_symlink() or (target is None and path.parent.is_symlink()):
-        msg = f"{path} is a link"
-        raise file_tree.OutputError(msg, "remove it, or give another file with `-o`")
+        raise file_tree.OutputError(f"{path} is a link", "remove it, or give another file with `-o`")
     content = render_schema(checked_project)
     head = editor_schema_marks.read_head(path)
     if head is not None and not head.startswith(editor_schema_marks.MARK) and _LANGUAGE_ID not in head:

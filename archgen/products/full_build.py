@@ -210,6 +210,5 @@ def _digest_product(place: Path, *, just_written: bool = False) -> str:
     elif not place.is_symlink():
         digest = file_tree.digest_named_file(str(place), place.stat().st_size)
     if digest is None:
-        msg = f"{place} is not as archgen wrote it"
-        raise ValueError(msg)
+        raise ValueError(f"{place} is not as archgen wrote it")
     return digest

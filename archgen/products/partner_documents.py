@@ -51,8 +51,7 @@ def write_impact(  # noqa: PLR0913 - what may be asked
             raise ComponentsError(msg)
         late = chosen
     if late is None:
-        msg = "name who or what is late: `--partner ID`, `--component ID`"
-        raise ComponentsError(msg)
+        raise ComponentsError("name who or what is late: `--partner ID`, `--component ID`")
     impact = partner_impact.find_impact(lookup, gather_exchanges(lookup), late, until=until)
     if form == "json":
         return format_json(impact_to_json(impact))

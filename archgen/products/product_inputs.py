@@ -155,7 +155,6 @@ class ProductInputs:
 
 
 def _list_shown_pictures(outline: Outline) -> frozenset[str]:
-    """Return the ids of the pictures that an outline shows."""
     from archgen.views.report.printed_report import walk_sections
     from archgen.views.shapes import Figure
 

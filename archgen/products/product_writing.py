@@ -127,7 +127,6 @@ def _choose_drawings(
 
 
 def _list_shown(inputs: ProductInputs, product: Product) -> dict[str, Drawing]:
-    """Return the drawings that a product shows, by id."""
     return {
         name: drawing
         for name, drawing in product.list_drawings(inputs).items()

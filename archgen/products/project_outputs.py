@@ -102,8 +102,7 @@ def write_diagrams(
     started_products = start_products(inputs, (product,))
     # A build without the drawing libraries only warns; here the pictures are all that was asked for.
     if inputs.views.drawings and not started_products.drawn.pictures:
-        msg = "no picture could be drawn, nothing was written"
-        raise file_tree.OutputError(msg)
+        raise file_tree.OutputError("no picture could be drawn, nothing was written")
     write_started(inputs, started_products, product, target)
     return len(started_products.drawn.pictures)
 

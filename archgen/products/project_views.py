@@ -189,7 +189,7 @@ def locate_repository(checked_project: CheckedProject) -> SourceRepository | Non
 
 def list_signed_tags(checked_project: CheckedProject) -> Mapping[PartnerPair, tuple[SignedTag, ...]]:
     """Return the tags that record signatures of two partners, newest first, by pairs in the order of their declaration."""
-    from archgen.git.tag_list import list_tags_below
+    from archgen.git.commit_log import list_tags_below
     from archgen.views.agreement.interface_record import SignedTag
 
     order = {partner: number for number, partner in enumerate(checked_project.architecture.partners)}

@@ -23,7 +23,7 @@ from archgen.edit.adopted_remedies import Adoption, FindingNames, plan_adoption
 from archgen.edit.import_source import list_stale_slices
 from archgen.findings import ignore_comments
 from archgen.frozen import dataclass, replace
-from archgen.git.tag_list import has_tag
+from archgen.git.commit_log import has_tag
 from archgen.model.architecture import Architecture
 from archgen.pipeline import CheckedProject
 from archgen.products import check_findings

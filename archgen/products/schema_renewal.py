@@ -45,7 +45,7 @@ def renew_schema(checked_project: CheckedProject) -> bool:
 
 def _write_names(root: Path, names: OfferedNames, text_digest: str) -> bool:
     from archgen.emit import file_tree
-    from archgen.git.ignored_files import ignores_file
+    from archgen.git.work_tree import ignores_file
     from archgen.products import editor_schema_file
 
     if ignores_file(root, SCHEMA_FILE):

@@ -11,7 +11,7 @@ from pathlib import Path
 from archgen.diagnostics import shorten_hash
 from archgen.frozen import replace
 from archgen.git import GitError
-from archgen.git.tag_list import list_tags_below
+from archgen.git.commit_log import list_tags_below
 from archgen.model.agreed_terms import Signature
 from archgen.pipeline import CheckedProject, VersionCache
 from archgen.products import compared_versions

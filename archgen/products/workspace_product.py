@@ -12,9 +12,8 @@ from archgen.emit.backend_manifests import Backend
 from archgen.emit.file_tree import OutputError, refuse_file
 from archgen.emit.workspace import workspace_writing
 from archgen.emit.workspace.disk_files import DiskReader, GeneratedFile, fold_file_path
-from archgen.emit.workspace.known_fits import KnownFits
 from archgen.emit.workspace.run_record import find_former_project, read_other_records, read_run_record, take_over_runs
-from archgen.emit.workspace.workspace_plan import STALE, FileStep, UserChoices, WorkspacePlan, plan_workspace
+from archgen.emit.workspace.workspace_plan import STALE, FileStep, KnownFits, UserChoices, WorkspacePlan, plan_workspace
 from archgen.model.architecture import ProjectInfo
 from archgen.pipeline import CheckedProject
 from archgen.products.backend_choice import choose_backends, raise_problems

@@ -108,8 +108,7 @@ def _read_digested(path: Path, digest: str, old: bytes | None, file: str) -> byt
     data = path.read_bytes() if path.is_file() else None
     if data == old or (data is not None and hashlib.sha256(data).hexdigest() == digest):
         return data
-    msg = f"{file} was edited since"
-    raise OutputError(msg, "nothing was undone; take back your own edits first, or use git")
+    raise OutputError(f"{file} was edited since", "nothing was undone; take back your own edits first, or use git")
 
 
 def _put_all(root: Path, contents: Mapping[str, bytes | None], olds: Mapping[str, bytes | None]) -> None:
@@ -123,8 +122,7 @@ def _put_all(root: Path, contents: Mapping[str, bytes | None], olds: Mapping[str
         for file in done:
             _put(root / file, olds[file])
         if isinstance(error, OSError):
-            msg = f"cannot write {done[-1]}: {error.strerror or error}"
-            raise OutputError(msg, "nothing was written") from error
+            raise OutputError(f"cannot write {done[-1]}: {error.strerror or error}", "nothing was written") from error
         raise
 
 

@@ -28,8 +28,7 @@ __all__ += ["load_at_revision", "load_project"]
 def __getattr__(name: str) -> object:
     """Load what reads other revisions, and git with it, once it is asked for: a check of files does without."""
     if name not in __all__:
-        message = f"module {__name__!r} has no attribute {name!r}"
-        raise AttributeError(message)
+        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
     from archgen.project import project_tracking
 
     return getattr(project_tracking, name)

@@ -371,8 +371,7 @@ def _parse_types(file: str, text: str) -> MappingNode:
     diagnostics = parsed_slice.validate_once().diagnostics
     types = parsed_slice.document.root.get("component_types") if parsed_slice.document else None
     if diagnostics or not isinstance(types, MappingNode):
-        msg = f"{file}: {'; '.join(f'{each.span.line}: {each.message}' for each in diagnostics)}"
-        raise ValueError(msg)
+        raise ValueError(f"{file}: {'; '.join(f'{each.span.line}: {each.message}' for each in diagnostics)}")
     return types
 
 

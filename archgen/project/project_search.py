@@ -28,15 +28,13 @@ def find_project(path: Path | None) -> tuple[Path, str]:
     if os.path.isdir(real_path):  # noqa: PTH112 - Path.is_dir raises where a folder may not be entered
         if os.path.lexists(real_path / PROJECT_FILE):
             return real_path, PROJECT_FILE
-        msg = f"{path} holds no {PROJECT_FILE}: `archgen init` makes one, or name a file"
-        raise ProjectNotFoundError(msg)
+        raise ProjectNotFoundError(f"{path} holds no {PROJECT_FILE}: `archgen init` makes one, or name a file")
     folder = Path(os.path.realpath(path.parent))
     if os.path.lexists(real_path) and (real_path.is_relative_to(folder) or not path.is_symlink()):
         return real_path.parent, real_path.name
     if os.path.lexists(path):  # a link that is broken or leads out of its folder: reading it says so
         return folder, path.name
-    msg = f"{path} does not exist"
-    raise ProjectNotFoundError(msg)
+    raise ProjectNotFoundError(f"{path} does not exist")
 
 
 def find_project_of_slice(file: Path) -> Path | None:
@@ -67,10 +65,8 @@ def _find_project_around() -> tuple[Path, str]:
     try:
         current_folder = Path.cwd()
     except OSError:
-        msg = "the current folder does not exist any more"
-        raise ProjectNotFoundError(msg) from None
+        raise ProjectNotFoundError("the current folder does not exist any more") from None
     folder = _find_folder_around(current_folder)
     if folder is not None:
         return folder, PROJECT_FILE
-    msg = f"no {PROJECT_FILE} here or in a folder above: `archgen init` makes one, or name a file"
-    raise ProjectNotFoundError(msg)
+    raise ProjectNotFoundError(f"no {PROJECT_FILE} here or in a folder above: `archgen init` makes one, or name a file")

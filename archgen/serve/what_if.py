@@ -39,8 +39,7 @@ def read_question(data: bytes) -> tuple[str, ...]:
         question = None
     overrides = question.get("set") if isinstance(question, dict) else None
     if not isinstance(overrides, list) or not all(isinstance(text, str) for text in overrides):
-        msg = 'ask with {"set": ["ELEMENT.timing.KEY=VALUE"]}'
-        raise QuestionError(msg)
+        raise QuestionError('ask with {"set": ["ELEMENT.timing.KEY=VALUE"]}')
     if len(overrides) > _MAX_OVERRIDES or any(len(text) > _MAX_LENGTH for text in overrides):
         msg = f"at most {_MAX_OVERRIDES} figures can be set at once, each in at most {_MAX_LENGTH} letters"
         raise QuestionError(msg)

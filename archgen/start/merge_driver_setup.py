@@ -142,5 +142,4 @@ def configure_git(folder: Path) -> None:
     for name, value in list_driver_settings().items():
         result = run_git(repository.top, "config", "--local", name, value)
         if result.status:
-            msg = f"git does not take the setting {name}: {result.error_text}"
-            raise git.GitError(msg)
+            raise git.GitError(f"git does not take the setting {name}: {result.error_text}")

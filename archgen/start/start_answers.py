@@ -61,8 +61,7 @@ def parse_partner(text: str) -> PartnerAnswer:
     # A handle alone does not name a partner.
     handle = items.pop() if len(items) > 1 and "@" in items[-1] else ""
     if handle and not REVIEWER_HANDLE.match(handle):
-        msg = f"'{handle}' is no handle: write @user, @organisation/team or an e-mail address"
-        raise ValueError(msg)
+        raise ValueError(f"'{handle}' is no handle: write @user, @organisation/team or an e-mail address")
     name, title = _parse_id_and_title(" ".join(items), "partner")
     return PartnerAnswer(name, title or title_from_id(name), handle)
 
@@ -75,8 +74,7 @@ def parse_group(text: str, partners: Iterable[PartnerAnswer]) -> GroupAnswer:
         owner = _make_id(owner, "partner")
     if owner and owner not in partner_ids:
         listed = ", ".join(partner_ids) if partner_ids else "none is named with --partner"
-        msg = f"'{owner}' is no partner's id ({listed})"
-        raise ValueError(msg)
+        raise ValueError(f"'{owner}' is no partner's id ({listed})")
     name, title = _parse_id_and_title(group_text, "group")
     return GroupAnswer(name, title or title_from_id(name), owner)
 
@@ -85,8 +83,7 @@ def _parse_id_and_title(text: str, kind: str) -> tuple[str, str]:
     """Return id and title of `id=Title`, of an id, or of a title. Raise ValueError."""
     first_part, has_equals, title = (item.strip() for item in text.partition("="))
     if not first_part:
-        msg = f"a {kind} has a name"
-        raise ValueError(msg)
+        raise ValueError(f"a {kind} has a name")
     if element_ids.is_id(first_part):
         return first_part, title
     return _make_id(first_part, kind), title if has_equals else first_part
@@ -109,8 +106,7 @@ def require_distinct(items: Iterable[PartnerAnswer | GroupAnswer], kind: str) ->
     seen_ids = set[str]()
     for item in items:
         if item.id in seen_ids:
-            msg = f"two {kind}s have the id '{item.id}'"
-            raise ValueError(msg)
+            raise ValueError(f"two {kind}s have the id '{item.id}'")
         seen_ids.add(item.id)
 
 

@@ -12,7 +12,7 @@ import yaml as pyyaml
 
 from archgen import resources
 from archgen.diagnostics import Severity, make_visible
-from archgen.emit.markdown.inert_text import escape_markdown
+from archgen.emit.markdown.comment_sentences import escape_markdown
 from archgen.start.start_answers import EXAMPLE_GROUPS, GroupAnswer, StartAnswers
 from archgen.syntax import yaml_writer
 from archgen.syntax.file_patterns import YAML_ENDINGS

@@ -8,7 +8,7 @@ import click
 import pytest
 from click.testing import CliRunner
 
-from archgen.cli.init_questions import ask_questions
+from archgen.cli.init_command import ask_questions
 from archgen.start import start_answers
 from archgen.start.start_answers import GroupAnswer, PartnerAnswer, StartAnswers
 

@@ -11,7 +11,7 @@ from typing import Any
 import pytest
 
 from archgen import resources
-from archgen.history import workers
+from archgen.history import history_counting
 from tests import repositories
 from tests.cli.conftest import Run
 
@@ -35,7 +35,9 @@ def environments(monkeypatch: pytest.MonkeyPatch) -> Mapping[str, dict[str, str]
     def record_process(process: Any, command: Sequence[str], *words: Any, **options: Any) -> None:  # noqa: ANN401
         if command[0] != "git":
             kind = next(
-                name for name in ("drawing_worker", "template_worker", "history.workers") if name in str(command)
+                name
+                for name in ("drawing_worker", "template_worker", "history.history_counting")
+                if name in str(command)
             )
             # None means that the process gets everything.
             started[kind] = dict(os.environ if options.get("env") is None else options["env"])
@@ -54,11 +56,11 @@ def test_workers_see_what_they_need_and_nothing_else(
         repositories.commit(folder, {"archgen.yaml": PROJECT + f"# {number}\n"})
     monkeypatch.setenv("SECRET_THING", "hunter2")
     monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "cache"))
-    monkeypatch.setattr(workers, "_COMMITS_PER_PROCESS", 1)
+    monkeypatch.setattr(history_counting, "_COMMITS_PER_PROCESS", 1)
     monkeypatch.setattr(os, "cpu_count", lambda: 2)
     assert run("build", folder, "--only", "diagrams,wiki").status == 0
     assert run("stats", folder, "--history").status == 0
-    assert sorted(environments) == ["drawing_worker", "history.workers", "template_worker"]
+    assert sorted(environments) == ["drawing_worker", "history.history_counting", "template_worker"]
     for variables in environments.values():
         assert variables.keys() <= ALLOWED_VARIABLES
     assert not {"PATH", "HOME"} & environments["template_worker"].keys()

@@ -9,11 +9,10 @@ from base64 import b64decode
 
 import pytest
 
-from archgen.emit import font_subset
-from archgen.emit.font_subset import embed_fonts, subset_font
+from archgen.emit import picture_files
 from archgen.emit.graphviz.font_config import FONT_FOLDER
 from archgen.emit.picture import Picture
-from archgen.emit.picture_files import build_picture_tree
+from archgen.emit.picture_files import build_picture_tree, embed_fonts, subset_font
 
 INTER = (FONT_FOLDER / "Inter-Regular.ttf").read_bytes()
 
@@ -33,18 +32,18 @@ def open_woff(data: bytes) -> dict[bytes, bytes]:
 
 
 def find_outline(tables: dict[bytes, bytes], character: str) -> bytes:
-    glyph = font_subset._find_glyph(tables[b"cmap"], ord(character))  # noqa: SLF001 - as a browser finds it
-    offsets = font_subset._read_offsets(tables[b"loca"], tables[b"head"])  # noqa: SLF001
+    glyph = picture_files._find_glyph(tables[b"cmap"], ord(character))  # noqa: SLF001 - as a browser finds it
+    offsets = picture_files._read_offsets(tables[b"loca"], tables[b"head"])  # noqa: SLF001
     return tables[b"glyf"][offsets[glyph] : offsets[glyph + 1]]
 
 
 def test_letters_keep_their_outlines_and_others_have_none() -> None:
-    whole, small = dict(font_subset._read_tables(INTER)), open_woff(subset_font(INTER, "AgÉ≤→"))  # noqa: SLF001
+    whole, small = dict(picture_files._read_tables(INTER)), open_woff(subset_font(INTER, "AgÉ≤→"))  # noqa: SLF001
     for character in "AgÉ≤→":
         outline = find_outline(whole, character)
         assert outline
         assert find_outline(small, character).rstrip(b"\0") == outline.rstrip(b"\0")
-    assert font_subset._find_glyph(small[b"cmap"], ord("B")) == 0  # noqa: SLF001
+    assert picture_files._find_glyph(small[b"cmap"], ord("B")) == 0  # noqa: SLF001
     assert len(small[b"glyf"]) < len(whole[b"glyf"]) / 50
     assert small[b"hmtx"] == whole[b"hmtx"]
 
@@ -66,6 +65,6 @@ def test_all_pictures_of_a_folder_bring_the_letters_of_all() -> None:
     assert len(fonts) == 2
     for font in fonts:
         tables = open_woff(font)
-        assert all(font_subset._find_glyph(tables[b"cmap"], ord(letter)) for letter in "One&xZwi")  # noqa: SLF001
-        assert not font_subset._find_glyph(tables[b"cmap"], ord("q"))  # noqa: SLF001
+        assert all(picture_files._find_glyph(tables[b"cmap"], ord(letter)) for letter in "One&xZwi")  # noqa: SLF001
+        assert not picture_files._find_glyph(tables[b"cmap"], ord("q"))  # noqa: SLF001
         assert len(font) < 12_000

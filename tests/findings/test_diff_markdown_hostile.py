@@ -14,8 +14,8 @@ from archgen.compare.comparison import BoundaryChange, FigureChange, FigureKey, 
 from archgen.diagnostics.diagnostic import Diagnostic, Severity
 from archgen.diagnostics.source_span import Span
 from archgen.emit.markdown import comparison_markdown
-from archgen.emit.markdown.inert_text import escape_inert
-from archgen.emit.markdown.limited_comment import MAX_COMMENT_SIZE
+from archgen.emit.markdown.comment_sentences import escape_inert
+from archgen.emit.markdown.comparison_markdown import MAX_COMMENT_SIZE
 from archgen.model.project_settings import AcceptedChange
 from archgen.timing.figures.timing_values import TimingValue
 from archgen.views.changes.comparison_document import ReadingErrors, describe_comparison

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from archgen.git.ignored_files import ignores_file
+from archgen.git.work_tree import ignores_file
 from tests.repositories import git, repository
 
 

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from archgen.history.workers import CommitContents
+from archgen.history.history_counting import CommitContents
 from archgen.project import load_project
 
 TEXT = "archgen: 1\ngroups: {a: {components: {b: {title: B}}}}\n"

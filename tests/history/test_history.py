@@ -10,7 +10,7 @@ import pytest
 
 from archgen import git, pipeline
 from archgen.emit.terminal import history_text
-from archgen.history import count_history, workers
+from archgen.history import count_history, history_counting
 from archgen.history.project_commits import list_commits
 from archgen.pipeline import CheckedProject
 from archgen.project import LoadedProject, find_tracked_project
@@ -84,7 +84,7 @@ def test_what_is_kept_is_taken_and_what_is_broken_is_counted_again(
     first = count_history(robot, cache=cache)
     (file,) = cache.iterdir()
     with monkeypatch.context() as patched:
-        patched.setattr(workers, "count_commits", lambda *_: pytest.fail("nothing is left to count"))
+        patched.setattr(history_counting, "count_commits", lambda *_: pytest.fail("nothing is left to count"))
         assert count_history(robot, cache=cache) == first
     for wrong in (
         b"",
@@ -99,35 +99,35 @@ def test_what_is_kept_is_taken_and_what_is_broken_is_counted_again(
 
 def test_several_processes_count_what_one_counts(robot: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     line = list_commits(find_tracked_project(robot), "revision")
-    alone = workers.count_commits(robot, line)
-    monkeypatch.setattr(workers, "_COMMITS_PER_PROCESS", 1)
+    alone = history_counting.count_commits(robot, line)
+    monkeypatch.setattr(history_counting, "_COMMITS_PER_PROCESS", 1)
     monkeypatch.setattr("os.cpu_count", lambda: 3)
     told: list[tuple[int, int]] = []
-    assert workers.count_commits(robot, line, lambda done, of: told.append((done, of))) == alone
+    assert history_counting.count_commits(robot, line, lambda done, of: told.append((done, of))) == alone
     assert sorted(told) == [(1, 3), (2, 3), (3, 3)]
 
 
 def test_a_killed_process_costs_time_only(robot: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     line = list_commits(find_tracked_project(robot), "revision")
-    alone = workers.count_commits(robot, line)
-    monkeypatch.setattr(workers, "_COMMITS_PER_PROCESS", 1)
+    alone = history_counting.count_commits(robot, line)
+    monkeypatch.setattr(history_counting, "_COMMITS_PER_PROCESS", 1)
     monkeypatch.setattr("os.cpu_count", lambda: 2)
-    monkeypatch.setattr(workers, "_START", "raise SystemExit({root!r} and 1)")
-    assert workers.count_commits(robot, line) == alone
+    monkeypatch.setattr(history_counting, "_START", "raise SystemExit({root!r} and 1)")
+    assert history_counting.count_commits(robot, line) == alone
 
 
 def test_a_process_that_dies_in_the_middle_of_a_line_costs_time_only(
     robot: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     line = list_commits(find_tracked_project(robot), "revision")
-    alone = workers.count_commits(robot, line)
-    monkeypatch.setattr(workers, "_COMMITS_PER_PROCESS", 1)
+    alone = history_counting.count_commits(robot, line)
+    monkeypatch.setattr(history_counting, "_COMMITS_PER_PROCESS", 1)
     monkeypatch.setattr("os.cpu_count", lambda: 2)
     thread_errors: list[object] = []
     monkeypatch.setattr("threading.excepthook", thread_errors.append)
     for half in ('{{"commit":', "null", "[1]", '{{"rows": []}}'):
-        monkeypatch.setattr(workers, "_START", f"import sys; {{root!r}}; sys.stdout.write({half!r})")
-        assert workers.count_commits(robot, line) == alone
+        monkeypatch.setattr(history_counting, "_START", f"import sys; {{root!r}}; sys.stdout.write({half!r})")
+        assert history_counting.count_commits(robot, line) == alone
     assert not thread_errors
 
 

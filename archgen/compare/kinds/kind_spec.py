@@ -101,8 +101,7 @@ def _read_value(attribute: str, default: _Default) -> Reader:
 def _refuse_elements(attribute: str, _default: _Default) -> Reader:
     def read(_element: object, _context: ReadContext) -> object:
         # Not before something is read: else `make language` could not mend it.
-        message = f"`{attribute}` holds elements, and no function in READERS reads them"
-        raise LookupError(message)
+        raise LookupError(f"`{attribute}` holds elements, and no function in READERS reads them")
 
     return read
 

@@ -40,8 +40,7 @@ def plan_move(version: JudgedVersion, element: Element, group: str | None, file:
         message = f"`{element_id}` does not stand directly in a group"
         raise EditRefusedError(message, "components of groups are moved; what is inside of others goes with them")
     if group not in version.project.architecture.groups:
-        message = f"there is no group `{group}`"
-        raise EditRefusedError(message, "`archgen new group` makes one")
+        raise EditRefusedError(f"there is no group `{group}`", "`archgen new group` makes one")
     renamed = RenamedIds({element: ("component", f"{group}.{name}")})
     refuse_taken(version, renamed)
     texts = NameTexts(version, renamed)
@@ -63,15 +62,12 @@ def refuse_strange_file(version: JudgedVersion, file: str) -> None:
         message = f"`{file}` lies outside of the project, or is not written plainly"
         raise EditRefusedError(message, "name a path from the project's folder, such as `groups/arm.yaml`")
     if not file.endswith((".yaml", ".yml")):
-        message = f"`{file}` is no name of a slice"
-        raise EditRefusedError(message, "end it in .yaml")
+        raise EditRefusedError(f"`{file}` is no name of a slice", "end it in .yaml")
     if version.project.loaded_project.first_file != PROJECT_FILE:
-        message = "a project of one file has no others"
-        raise EditRefusedError(message, f"call it {PROJECT_FILE}, in a folder")
+        raise EditRefusedError("a project of one file has no others", f"call it {PROJECT_FILE}, in a folder")
     files = version.project.loaded_project.files
     if files.has_path(file) and file not in version.project.yaml_files:
-        message = f"{file} is there, and no slice of the project"
-        raise EditRefusedError(message, "choose another file")
+        raise EditRefusedError(f"{file} is there, and no slice of the project", "choose another file")
 
 
 def _move_to_file(version: JudgedVersion, element: Element, file: str) -> Refactoring:
@@ -82,8 +78,7 @@ def _move_to_file(version: JudgedVersion, element: Element, file: str) -> Refact
     elif kind in _SECTIONS:
         path = (_SECTIONS[kind], element_id)
     else:
-        message = f"`{element_id}` stands inside of another element, and goes with it"
-        raise EditRefusedError(message, "move that one")
+        raise EditRefusedError(f"`{element_id}` stands inside of another element, and goes with it", "move that one")
     declared = dict.fromkeys(
         written.span.file for written in version.index.list_names(*element) if written.is_declaration
     )
@@ -92,8 +87,7 @@ def _move_to_file(version: JudgedVersion, element: Element, file: str) -> Refact
         raise EditRefusedError(message, "edit it in the library's files, with all projects that use it")
     sources = [each for each in declared if each != file and _writes(version, each, path)]
     if not sources:
-        message = f"{file} writes all of `{element_id}` already"
-        raise EditRefusedError(message)
+        raise EditRefusedError(f"{file} writes all of `{element_id}` already")
     # What other files say of it stays there: the first one declares it.
     moves = [EntryMove(sources[0], path, file, path[:-1])]
     renamed = RenamedIds({})

@@ -36,8 +36,7 @@ def find_element(version: JudgedVersion, name: str, kind: str | None = None) -> 
         raise EditRefusedError(message, did_you_mean(name, known_names) or "`archgen list` shows what there is")
     if len(elements) > 1:
         listed = ", ".join(f"{each_kind.replace('_', ' ')} `{each_id}`" for each_kind, each_id in elements[:MAX_LISTED])
-        message = f"`{name}` can mean {listed}"
-        raise EditRefusedError(message, "say more of the path, or which kind with --kind")
+        raise EditRefusedError(f"`{name}` can mean {listed}", "say more of the path, or which kind with --kind")
     return elements[0]
 
 
@@ -48,8 +47,7 @@ def plan_rename(version: JudgedVersion, element: Element, new_name: str, kept: K
     odd = next((letter for letter in new_name if letter in _ODD_LETTERS or not letter.isprintable()), None)
     if odd is not None or not new_name.strip() or len(new_name) > _MAX_LENGTH:
         what = "is empty or too long" if odd is None else f"has {odd!r} in it"
-        message = f"the new name {what}"
-        raise EditRefusedError(message, "choose a plain one, such as `arm_planner`")
+        raise EditRefusedError(f"the new name {what}", "choose a plain one, such as `arm_planner`")
     path, _, old_name = element_id.rpartition(".") if kind in PATH_KINDS else ("", "", element_id)
     if path and "." in new_name:
         new_path, _, new_word = new_name.rpartition(".")
@@ -64,8 +62,7 @@ def plan_rename(version: JudgedVersion, element: Element, new_name: str, kept: K
         # Of a frame that parameters name, the words behind them are its own.
         new_name = old_name[: old_name.rindex(")") + 1] + new_name
     if new_name == old_name:
-        message = f"`{element_id}` is called so already"
-        raise EditRefusedError(message)
+        raise EditRefusedError(f"`{element_id}` is called so already")
     if kind == "partner":
         _refuse_partner_files(version, element_id, new_name)
     elements = version.index.list_ids(kind, element_id)
@@ -77,8 +74,7 @@ def plan_rename(version: JudgedVersion, element: Element, new_name: str, kept: K
         texts.rename_word(name, number, new_name)
         declared = declared or name.is_declaration
     if not declared and kind != "type":
-        message = f"`{element_id}` is declared nowhere that can be edited"
-        raise EditRefusedError(message)
+        raise EditRefusedError(f"`{element_id}` is declared nowhere that can be edited")
     return prove_refactoring(version, renamed, texts, kept)
 
 
@@ -99,8 +95,7 @@ def _refuse_partner_files(version: JudgedVersion, partner: str, new_name: str) -
         words = stem.split("-")
         if is_agreement_file(file) and partner in words:
             new_file = f"{folder}/{'-'.join(new_name if each == partner else each for each in words)}.yaml"
-            message = f"{file} is read by the id of the partner"
-            raise EditRefusedError(message, f"`git mv {file} {new_file}` first")
+            raise EditRefusedError(f"{file} is read by the id of the partner", f"`git mv {file} {new_file}` first")
 
 
 def refuse_taken(version: JudgedVersion, renamed: RenamedIds) -> None:

@@ -243,8 +243,7 @@ def _rename(version: _Version, element: Element, new_element: Element) -> _Versi
     """Return a version with an element renamed, and in another group if it is. Raise EditRefusedError."""
     kind, old_id = element
     if not any(each.is_declaration for each in version.judged.index.list_names(kind, old_id)) and kind != "type":
-        message = f"`{old_id}` is declared nowhere that can be edited"
-        raise EditRefusedError(message)
+        raise EditRefusedError(f"`{old_id}` is declared nowhere that can be edited")
     old_group, _, old_name = old_id.rpartition(".")
     new_group, _, new_name = new_element[1].rpartition(".")
     if kind not in {"component", "input", "output", "group"}:
@@ -351,8 +350,7 @@ def _move(version: _Version, moves: Sequence[EntryMove], side: CheckedProject) -
     moved = version.edit(MovedLines(version.judged, ()).move_all(own_moves))
     before, after = (_read_meaning(each.project) for each in (version, moved))
     if before != after:
-        message = "more than places would change"
-        raise EditRefusedError(message)
+        raise EditRefusedError("more than places would change")
     kept = {each.file for each in side.loaded_project.documents}
     for file in [each for each in dict.fromkeys(move.file for move in own_moves) if each not in kept]:
         # What splits a file takes it away.

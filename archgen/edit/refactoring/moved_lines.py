@@ -104,8 +104,7 @@ class MovedLines:
                 self._files[name] = _File(None, "", lines, "\n")
                 return self._files[name]
             if files.is_behind_link(name):
-                message = f"{name} is behind a link"
-                raise EditRefusedError(message, "edit it in the folder in which it lies")
+                raise EditRefusedError(f"{name} is behind a link", "edit it in the folder in which it lies")
             mark = BYTE_ORDER_MARK if text.startswith(BYTE_ORDER_MARK) else ""
             try:
                 parsed = parse_text(name, text.removeprefix(mark))

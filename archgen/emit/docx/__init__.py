@@ -9,9 +9,15 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Mapping
 
-from archgen.emit.docx.contents_lists import write_contents
+from archgen.emit.docx.contents_lists import (
+    list_placeholder_values,
+    write_contents,
+    write_core_properties,
+    write_front_sections,
+    write_title_page,
+)
 from archgen.emit.docx.document_text import format_document
-from archgen.emit.docx.docx_file import save_package
+from archgen.emit.docx.docx_writer import save_package
 from archgen.emit.docx.embedded_font import embed_code_font
 from archgen.emit.docx.page_flow import assign_sheets, estimate_pages, fill_pages
 from archgen.emit.docx.paper_sheets import narrow_margins
@@ -28,12 +34,6 @@ from archgen.emit.docx.template_placeholders import (
     find_contents_mark,
     find_placeholders,
     place_contents,
-)
-from archgen.emit.docx.title_page import (
-    list_placeholder_values,
-    write_core_properties,
-    write_front_sections,
-    write_title_page,
 )
 from archgen.emit.picture import Picture
 from archgen.emit.template_package import TemplateError

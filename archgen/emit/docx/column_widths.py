@@ -5,9 +5,9 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 
-from archgen.emit.docx.bars import measure_bar
 from archgen.emit.docx.docx_writer import ColumnMeasures, DocxWriter
 from archgen.emit.docx.paper_sheets import PaperSheet
+from archgen.emit.docx.text_pieces import measure_bar
 from archgen.emit.text_metrics import join_hard_blanks, measure_code, measure_words, split_name
 from archgen.frozen import dataclass
 from archgen.views.shapes import Column, Inlines, Table

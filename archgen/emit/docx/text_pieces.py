@@ -1,4 +1,4 @@
-"""Headings, paragraphs and lists, as pieces of the report's flow."""
+"""Headings, paragraphs, lists and bars, as pieces of the report's flow."""
 
 from __future__ import annotations
 
@@ -6,7 +6,6 @@ import math
 import re
 from collections.abc import Iterable, Iterator, Sequence
 
-from archgen.emit.docx.bars import format_bar
 from archgen.emit.docx.docx_writer import ContentsEntry, DocxWriter
 from archgen.emit.docx.list_numbering import format_heading_number
 from archgen.emit.docx.page_flow import FlowPiece
@@ -23,7 +22,7 @@ from archgen.emit.docx.word_xml import (
 from archgen.emit.state_colours import CHANGE_COLOURS, MUTED_COLOUR, STATUS_COLOURS
 from archgen.emit.text_metrics import CODE_SCALE, measure_code, measure_word, split_name
 from archgen.frozen import dataclass, replace
-from archgen.views.shapes import Bullets, Inlines, Paragraph, Text
+from archgen.views.shapes import Bullets, Inlines, Paragraph, Text, WaterfallPiece
 from archgen.views.short_figures import write_comparisons
 
 MUTED_SETTING = f'<w:color w:val="{MUTED_COLOUR}"/>'
@@ -245,3 +244,67 @@ def write_list_item(
 
 def _format_number(depth: int, list_id: int) -> str:
     return f'<w:numPr><w:ilvl w:val="{depth}"/><w:numId w:val="{list_id}"/></w:numPr>'
+
+
+METER_LENGTH, PIECES_LENGTH = 40.0, 200.0
+"""Lengths of a bar in points: of a share, and of stretches on an axis."""
+_BLANK = "\u00a0"
+_BLANK_WIDTH = measure_word(" ")
+_TYPE_SIZE = 5.0
+"""Type size of the blanks: how high the bar is."""
+_PALE = "E4E9ED"
+_COLOURS = {
+    "met": "1C6B3C", "not proven": "C78A2B", "open": "C78A2B", "missed": "B3261E", "uncovered": "C78A2B", "warning": "C78A2B",
+    "sampling": "9CC5DF", "response": "1F6FB5", "link": "8D99A3",
+}  # fmt: skip
+
+
+def measure_bar(text: Text) -> float:
+    """Return the length of a run's bar in points, 0 where it has none."""
+    return PIECES_LENGTH if text.pieces else METER_LENGTH if text.meter else 0.0
+
+
+def format_bar(text: Text, width: float) -> str:
+    """Return the runs of a run's bar, `width` points long where that is known and less than usual."""
+    length = min(measure_bar(text), width or METER_LENGTH * 4)
+    count = max(int(length / (_BLANK_WIDTH * _TYPE_SIZE)), 1)
+    return "".join(_format_stretch(size, colour) for size, colour in _list_stretches(text, count))
+
+
+def _list_stretches(text: Text, count: int) -> Iterator[tuple[int, str]]:
+    """Yield the stretches of a bar of so many blanks, each with its colour: empty for none."""
+    if text.meter and not text.pieces:
+        filled = min(max(round(text.meter.share * count), 1 if text.meter.share else 0), count)
+        yield filled, _COLOURS.get(text.meter.status, _PALE)
+        yield count - filled, _PALE
+        return
+    position = 0
+    for piece in text.pieces:
+        start, end = round(piece.start * count), round(piece.end * count)
+        start = max(start, position)
+        yield start - position, ""
+        position = max(end, start + 1)
+        yield from _list_piece(piece, position - start)
+    if text.meter:
+        yield count - position, _PALE
+
+
+def _list_piece(piece: WaterfallPiece, size: int) -> Iterator[tuple[int, str]]:
+    colour = _COLOURS.get(piece.kind, "")
+    if piece.is_cut and size > 4:  # noqa: PLR2004 - two halves, and what parts them
+        # Drawn short: two halves with a gap.
+        yield from ((size // 2 - 1, colour), (1, ""), (size - size // 2, colour))
+    else:
+        yield size, colour or "unknown"
+
+
+def _format_stretch(size: int, colour: str) -> str:
+    if size <= 0:
+        return ""
+    half_points = round(_TYPE_SIZE * 2)
+    shade = ""
+    if colour == "unknown":
+        shade = '<w:shd w:val="diagStripe" w:color="C78A2B" w:fill="FBF1E4"/>'
+    elif colour:
+        shade = f'<w:shd w:val="clear" w:color="auto" w:fill="{colour}"/>'
+    return format_run(_BLANK * size, f'<w:sz w:val="{half_points}"/><w:szCs w:val="{half_points}"/>{shade}')

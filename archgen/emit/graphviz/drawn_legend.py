@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Sequence
 
-from archgen.emit.graphviz import arrow_styles, box_styles, palette
+from archgen.emit.graphviz import box_styles, palette, styled_graph
 from archgen.emit.graphviz.box_styles import add_decorations
 from archgen.emit.graphviz.dot_text import escape_label, wrap_text
 from archgen.emit.graphviz.placed_scene import DotAttributes, Scene, SceneLine, ScenePart
@@ -150,7 +150,7 @@ def _arrow_sample(key: str, arrow: Arrow) -> Scene:
     width = _SAMPLE_SIZE[0]
     ends = tuple(_create_mark(f"{key}{at}", x, 0) for at, x in enumerate((0.0, width)))
     attributes = {
-        **arrow_styles.style_arrow(arrow, lambda _: None),
+        **styled_graph.style_arrow(arrow, lambda _: None),
         "tooltip": '" "',
         "edgetooltip": '" "',
     }

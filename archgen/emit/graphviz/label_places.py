@@ -156,7 +156,7 @@ def _find_spot(
 
 def _is_free(rectangle: Rectangle, occupied: list[Rectangle]) -> bool:
     """Whether a rectangle is no nearer than a gap to any of the others."""
-    # `rectangles_meet` written out: calls of it took half of the time.
+    # Written out: calls of a function took half of the time.
     left, bottom, right, top = rectangle
     for other_left, other_bottom, other_right, other_top in occupied:
         if (

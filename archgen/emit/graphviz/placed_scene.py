@@ -227,13 +227,3 @@ def _format_numbers(*values: float) -> str:
 def format_attributes(attributes: DotAttributes) -> str:
     """Return attributes as DOT writes them."""
     return " ".join(f"{name}={value}" for name, value in attributes.items())
-
-
-def rectangles_meet(first: Rectangle, second: Rectangle, gap: float = 0.0) -> bool:
-    """Return whether two rectangles overlap, or are nearer to each other than a gap."""
-    return (
-        first[0] < second[2] + gap
-        and second[0] < first[2] + gap
-        and first[1] < second[3] + gap
-        and second[1] < first[3] + gap
-    )

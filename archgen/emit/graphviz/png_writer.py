@@ -160,7 +160,6 @@ def _choose_few_colours(rows: list[bytes], table: _ColourTable) -> list[bytes]:
 
 
 def _pack_halves(pixels: bytes) -> bytes:
-    """Return pixels of a byte each as half a byte each."""
     even = pixels + bytes(len(pixels) % 2)
     high, low = even[0::2].translate(_HIGH_HALVES), even[1::2]
     return (int.from_bytes(high) | int.from_bytes(low)).to_bytes(len(high))

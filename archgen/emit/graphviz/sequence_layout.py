@@ -8,7 +8,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from typing import Literal
 
-from archgen.emit.graphviz import arrow_styles, palette
+from archgen.emit.graphviz import palette, styled_graph
 from archgen.emit.graphviz.box_styles import LinkResolver, link_attributes, style_box
 from archgen.emit.graphviz.dot_text import escape_label, wrap_text
 from archgen.emit.graphviz.drawn_legend import add_graph_legend
@@ -154,7 +154,7 @@ def _draw_message(  # noqa: PLR0913, PLR0917 - a step, how it looks, and where i
     width, height = size
     tail, head = columns[message.tail], columns[message.head]
     arrow = _make_arrow(message)
-    style = arrow_styles.style_arrow(arrow, resolve_link)
+    style = styled_graph.style_arrow(arrow, resolve_link)
     name, ends = str(message.number), (f"h{message.tail}", f"h{message.head}")
     if message.tail == message.head:
         row = max(height, _LOOP_HEIGHT)

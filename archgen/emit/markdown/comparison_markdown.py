@@ -6,20 +6,21 @@ is counted, with the command that shows it. Names, titles and messages remain te
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 
 from archgen.compare.edits import Edit
 from archgen.diagnostics import Diagnostic, Severity, join_words, keep_first
 from archgen.emit.markdown.comment_sentences import (
     ElementNames,
+    escape_inert,
+    make_code_cell,
     shorten_sentence_name,
     write_code,
     write_sentence,
     write_title,
 )
-from archgen.emit.markdown.inert_text import escape_inert, make_code_cell
-from archgen.emit.markdown.limited_comment import MAX_COMMENT_SIZE, LimitedComment
 from archgen.emit.markdown.mermaid_chart import write_flowchart
+from archgen.frozen import dataclass, field
 from archgen.model.variant import BASE_NAME
 from archgen.views.changes import comparison_document
 from archgen.views.changes.breaking_items import BreakingChange
@@ -30,6 +31,101 @@ from archgen.views.graphs.changes import SMALL_BUDGET
 from archgen.views.graphs.changes.picture_folding import fits_budget
 from archgen.views.inline_text import count_noun
 from archgen.views.picture_shapes import Graph
+
+MAX_COMMENT_SIZE = 65_536 - 200
+"""GitHub's limit for one comment (GitLab's is higher), minus room for the mark by which the comment is found again."""
+_CLOSING_RESERVE = 600
+"""Room for what closes the comment, and says that something is left out."""
+
+
+@dataclass(slots=True)
+class LimitedComment:
+    """Blocks of Markdown separated by blank lines. `command` shows everything; it is a code span of at most 300
+    characters.
+    """
+
+    limit: int
+    command: str
+    blocks: list[str] = field(default_factory=list)
+    used_size: int = 0
+    is_cut: bool = False
+
+    def has_room_for(self, text: str) -> bool:
+        """Whether there is room for a block."""
+        return self.used_size + count_characters(text) + 2 <= self.limit - _CLOSING_RESERVE
+
+    def add_block(self, text: str) -> None:
+        """Add a block if it fits, else mark the comment as cut."""
+        if not self.has_room_for(text):
+            self.is_cut = True
+            return
+        self.blocks.append(text)
+        self.used_size += count_characters(text) + 2
+
+    def add_items(
+        self,
+        title: str,
+        items: Sequence[str],
+        summary: str = "",
+        open_count: int | None = None,
+        uncounted_items: int = 0,
+    ) -> None:
+        """Add a list below a title. `shown` items are open, the others are folded below the summary, in which `{}`
+        becomes their number; `less` more are only counted.
+        """
+        open_count = len(items) if open_count is None else open_count
+        open_items, folded_items = items[:open_count], items[open_count:]
+        if open_items:
+            self._add_list(title, open_items, "", 0 if folded_items else uncounted_items)
+        elif title:
+            self.add_block(title)
+        if folded_items:
+            folded_summary = summary.replace("{}", str(len(folded_items)))
+            self._add_list(f"<details><summary>{folded_summary}</summary>", folded_items, "</details>", uncounted_items)
+
+    def _add_list(self, opening: str, items: Sequence[str], closing: str, uncounted_items: int) -> None:
+        fitting_items = self._take_fitting(items, opening, closing)
+        left_count = len(items) - len(fitting_items) + uncounted_items
+        more_note = [f"- and {left_count} more: {self.command}"] if left_count > 0 else []
+        self.add_block(
+            "\n\n".join(part for part in (opening, "\n".join((*fitting_items, *more_note)), closing) if part)
+        )
+
+    def _take_fitting(self, lines: Iterable[str], *around: str) -> list[str]:
+        """Return the first lines: those that there is room for beside what stands around them."""
+        # 100 characters are for "- and N more" and the blank lines in between.
+        taken = sum(map(count_characters, (*around, self.command))) + 100
+        room = self.limit - self.used_size - _CLOSING_RESERVE - taken
+        fitting_lines = []
+        for line in lines:
+            room -= count_characters(line) + 1
+            if room < 0:
+                break
+            fitting_lines.append(line)
+        return fitting_lines
+
+    def add_table(self, heads: Sequence[str], rows: Sequence[Sequence[str]]) -> None:
+        """Add a table with as many rows as fit; cells are escaped already."""
+        lines = [_table_row(heads), _table_row(["---"] * len(heads))]
+        fitting_rows = self._take_fitting(map(_table_row, rows), "\n".join(lines))
+        self.add_block("\n".join((*lines, *fitting_rows)))
+        if len(fitting_rows) < len(rows):
+            self.add_block(f"and {len(rows) - len(fitting_rows)} more: {self.command}")
+
+    def write_text(self) -> str:
+        """Return the comment."""
+        cut_note = [f"More does not fit into a comment: {self.command}"] if self.is_cut else []
+        return "\n\n".join((*self.blocks, *cut_note)) + "\n"
+
+
+def _table_row(cells: Sequence[str]) -> str:
+    return f"| {' | '.join(cells)} |"
+
+
+def count_characters(text: str) -> int:
+    """Count characters like the strictest host: those outside the basic multilingual plane are two."""
+    return len(text) + sum(character > "\uffff" for character in text)
+
 
 _SHOWN_PARTNERS = 12
 _MAX_OPEN_ITEMS, _MAX_OPEN_TOTAL = 8, 24

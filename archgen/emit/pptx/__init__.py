@@ -26,8 +26,7 @@ def write_slides(outline: Outline, pictures: Mapping[str, Picture], template: by
     try:
         from archgen.emit.pptx.slide_drawing import SlideDrawing
     except ImportError:
-        message = "writing .pptx needs the library python-pptx: `pip install python-pptx`"
-        raise PythonPptxError(message) from None
+        raise PythonPptxError("writing .pptx needs the library python-pptx: `pip install python-pptx`") from None
 
     def draw(used_template: bytes | None) -> bytes:
         drawing = SlideDrawing(outline, used_template)

@@ -9,9 +9,8 @@ from typing import Any
 from archgen.diagnostics import join_first
 from archgen.diagnostics.text_columns import TextRow, align_rows
 from archgen.emit.data import timing_json
-from archgen.emit.terminal import chain_gaps, chain_remedies
-from archgen.emit.terminal.chain_gaps import describe_slack
-from archgen.emit.terminal.timing_text import format_figure, format_missing
+from archgen.emit.terminal import chain_remedies, timing_text
+from archgen.emit.terminal.timing_text import describe_slack, format_figure, format_missing
 from archgen.timing.analysis import Analysis, ChainResult, ChainTerm
 from archgen.timing.chains.chain_advice import advise_on_chain
 from archgen.timing.chains.chain_bounds import BoundedPath
@@ -80,12 +79,12 @@ def format_chain(  # noqa: PLR0913, PLR0917 - what is shown of one chain
         )
         rows.append(("    reduced data age", figure_wording.format_duration(published[1]), ""))
     if result.deadline:
-        verdict_text = ", ".join(filter(None, (VERDICT_WORDS[result.verdict], chain_gaps.describe_slack(result))))
+        verdict_text = ", ".join(filter(None, (VERDICT_WORDS[result.verdict], timing_text.describe_slack(result))))
         rows.append(("deadline", format_figure(result.deadline), verdict_text))
-    rows += [(share.strip(), limit, verdict) for share, _, limit, verdict in chain_gaps.list_share_rows(result)]
+    rows += [(share.strip(), limit, verdict) for share, _, limit, verdict in timing_text.list_share_rows(result)]
     yield from align_rows(rows, width)
     if result.late_run:
-        yield f"  {chain_gaps.describe_late_run(result)}"
+        yield f"  {timing_text.describe_late_run(result)}"
     advice = advise_on_chain(analysis, result)
     if advice is not None:
         yield ""

@@ -5,9 +5,10 @@ from __future__ import annotations
 from collections.abc import Callable, Collection, Iterable, Iterator, Mapping
 from fractions import Fraction
 
-from archgen.diagnostics import join_first
+from archgen.diagnostics import join_first, make_visible
 from archgen.diagnostics.text_columns import TextRow, format_section
-from archgen.emit.terminal import chain_gaps, chain_remedies
+from archgen.emit.terminal import chain_remedies
+from archgen.simulation.drawn_orders import describe_orders
 from archgen.timing.analysis import Analysis, ChainResult, HostLoad
 from archgen.timing.chains.chain_advice import advise_on_chain
 from archgen.timing.chains.chain_verdicts import VERDICT_MEANINGS, VERDICT_WORDS
@@ -93,10 +94,10 @@ def _chain_rows(analysis: Analysis, chains: Iterable[ChainResult]) -> Iterator[T
             format_figure(result.bound),
             deadline,
             VERDICT_WORDS[result.verdict] if result.deadline else "",
-            chain_gaps.describe_slack(result),
-            "; ".join(filter(None, (chain_gaps.describe_late_run(result), describe_gaps(result, analysis)))),
+            describe_slack(result),
+            "; ".join(filter(None, (describe_late_run(result), describe_gaps(result, analysis)))),
         )
-        yield from chain_gaps.list_share_rows(result)
+        yield from list_share_rows(result)
 
 
 def _advice_rows(analysis: Analysis, chains: Iterable[ChainResult]) -> Iterator[TextRow]:
@@ -354,3 +355,32 @@ def _list_shown_values(analysis: Analysis, chains: Mapping[str, ChainResult]) ->
     yield from (value for link in analysis.links.values() for value in (link.traffic, link.share))
     for name, pace in analysis.paces.items():
         yield from (pace.rate, pace.gap, analysis.responses[name].worst)
+
+
+def describe_slack(result: ChainResult) -> str:
+    """Return how much of its deadline a chain's bound leaves, or by how much it is above it: `252.1 ms left`."""
+    if result.slack is None:
+        return ""
+    text = figure_wording.format_duration(abs(result.slack))
+    return f"{text} left" if result.slack >= 0 else f"{text} above it"
+
+
+def list_share_rows(result: ChainResult) -> Iterator[TextRow]:
+    """Yield the deadlines of shares of a chain's reactions, and what bounds say of them."""
+    for each in result.shares:
+        verdict = (
+            VERDICT_WORDS[each.verdict] if each.verdict != "open" else "only `archgen simulate` and recordings judge it"
+        )
+        yield f"  {each.name} of reactions", "", f"deadline {figure_wording.format_duration(each.limit)}", verdict
+
+
+def describe_late_run(result: ChainResult) -> str:
+    """Return how to see a chain late, empty where no run is known."""
+    run = result.late_run
+    if run is None:
+        return ""
+    orders_text = describe_orders(run.orders)
+    longest_text = figure_wording.format_duration(run.longest)
+    return make_visible(
+        f"seen in `{run.write_command(result.id)}`: {longest_text}{f' ({orders_text})' if orders_text else ''}"
+    )

@@ -163,13 +163,11 @@ def _read_assets(backend: Backend) -> list[tuple[str, bytes]]:
         if excess:
             raise _AssetError(excess)
         if path.is_symlink():
-            msg = f"`{name}` is a link; an asset is a file"
-            raise _AssetError(msg)
+            raise _AssetError(f"`{name}` is a link; an asset is a file")
         if path.is_file():
             size += path.stat().st_size
             if size > _MAX_ASSET_BYTES:
-                msg = f"its assets have more than {_MAX_ASSET_BYTES // 1_000_000} MB"
-                raise _AssetError(msg)
+                raise _AssetError(f"its assets have more than {_MAX_ASSET_BYTES // 1_000_000} MB")
             assets.append((name, path.read_bytes()))
     return assets
 

@@ -52,8 +52,7 @@ class TemplateLoader(BaseLoader):
         if not path.is_relative_to(self.folder) or not path.is_file():
             raise TemplateNotFound(template)
         if path.stat().st_size > MAX_TEMPLATE_BYTES:
-            msg = f"the template has more than {MAX_TEMPLATE_BYTES} bytes"
-            raise TemplateBoundError(msg)
+            raise TemplateBoundError(f"the template has more than {MAX_TEMPLATE_BYTES} bytes")
         return path.read_text("utf-8"), template, None
 
 
@@ -231,8 +230,7 @@ def _plan_files(
                 path = _choose_safe_path(path, taken_paths)
             count += 1
             if count > limits.files:
-                msg = f"it writes more than {limits.files} files"
-                raise TemplateBoundError(msg)
+                raise TemplateBoundError(f"it writes more than {limits.files} files")
             yield PlannedFile(path, file, position, item, key)
 
 
@@ -257,8 +255,7 @@ def _select_items(data: Mapping[str, Any], file: Mapping[str, Any]) -> Iterable[
     collection: Any = data
     for name in file["for_each"].split("."):
         if not isinstance(collection, dict) or name not in collection:
-            msg = f"there is no `{file['for_each']}` in the data for `for_each`"
-            raise TemplateBoundError(msg)
+            raise TemplateBoundError(f"there is no `{file['for_each']}` in the data for `for_each`")
         collection = collection[name]
     pairs = (
         collection.items()
@@ -297,8 +294,7 @@ def _render_bounded(template: Template, values: Mapping[str, Any], remaining: in
     for part in template.generate(**values):
         remaining -= len(part)
         if remaining < 0:
-            msg = "it writes more than it may"
-            raise TemplateBoundError(msg)
+            raise TemplateBoundError("it writes more than it may")
         parts.append(part)
     return "".join(parts)
 

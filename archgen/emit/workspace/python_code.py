@@ -87,8 +87,7 @@ class PythonCode:
 def read_python_code(data: bytes) -> PythonCode:
     """Read a file. Raise UnreadableCodeError where it is no Python, too long, or nested too deeply."""
     if len(data) > _MAX_BYTES:
-        msg = f"it has more than {_MAX_BYTES // 1_000_000} MB"
-        raise UnreadableCodeError(msg)
+        raise UnreadableCodeError(f"it has more than {_MAX_BYTES // 1_000_000} MB")
     try:
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")
@@ -96,14 +95,11 @@ def read_python_code(data: bytes) -> PythonCode:
         return _CodeReader(tree, data.splitlines()).read()
     except SyntaxError as error:
         version = f"{sys.version_info.major}.{sys.version_info.minor}"
-        msg = f"it is no Python {version}: {error.msg}"
-        raise UnreadableCodeError(msg, error.lineno or 1) from None
+        raise UnreadableCodeError(f"it is no Python {version}: {error.msg}", error.lineno or 1) from None
     except (RecursionError, MemoryError):
-        msg = "it is nested too deeply"
-        raise UnreadableCodeError(msg) from None
+        raise UnreadableCodeError("it is nested too deeply") from None
     except ValueError as error:  # bytes of no encoding, or zeros
-        msg = f"it is no text: {error}"
-        raise UnreadableCodeError(msg) from None
+        raise UnreadableCodeError(f"it is no text: {error}") from None
 
 
 def names_message(written: tuple[str, str], message: str) -> bool:

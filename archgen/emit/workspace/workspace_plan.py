@@ -3,15 +3,18 @@
 from __future__ import annotations
 
 import hashlib
+import re
+import sys
 from collections import defaultdict
 from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
+from pathlib import Path
 from typing import Literal
 
+from archgen.cache.file_store import FileStore
+from archgen.cache.program_stamp import stamp_program
 from archgen.emit.workspace.disk_files import DiskFile, DiskReader, GeneratedFile, fold_file_path
-from archgen.emit.workspace.known_fits import KnownFits, digest_fit
-from archgen.emit.workspace.moved_packages import find_moved_packages
 from archgen.emit.workspace.own_code import CodeFinding, CodeReport, has_lost_names, judge_own_code, read_contract
 from archgen.emit.workspace.run_record import (
     RecordedFile,
@@ -21,6 +24,42 @@ from archgen.emit.workspace.run_record import (
     join_digests,
     split_digests,
 )
+
+
+class KnownFits:
+    """The digests of all that decides whether a file fits, of those that did in the last run and in this one."""
+
+    def __init__(self, cache_folder: Path | None = None, workspace: Path = Path(), backend: str = "") -> None:
+        """Take the user's cache; without it, nothing is known."""
+        self._store = FileStore(cache_folder, ".fits", 48)
+        words = (stamp_program(), sys.version, str(workspace.absolute()), backend) if cache_folder else ()
+        self._key = hashlib.sha256("\n".join(words).encode("utf-8", "replace")).hexdigest()
+        kept = self._store.load(self._key) or b""
+        self._known = frozenset(kept.decode("ascii", "replace").split())
+        self._found: set[str] = set()
+
+    def is_known(self, digest: str) -> bool:
+        """Whether what has this digest fitted. It is kept for the next run, too."""
+        if digest in self._known:
+            self._found.add(digest)
+        return digest in self._known
+
+    def add(self, digest: str) -> None:
+        """Remember what was found to fit."""
+        self._found.add(digest)
+
+    def keep(self) -> None:
+        """Keep what fitted in this run, where that is something else than before."""
+        if self._found != self._known:
+            self._store.store(self._key, "\n".join(sorted(self._found)).encode())
+
+
+def digest_fit(file: GeneratedFile, content_digest: str, *recorded: Mapping[str, str]) -> str:
+    """Return a digest of a file of the user's own, what is generated around it, and what its names meant before."""
+    meanings = (word for each in recorded for word in ("", *map(str, sorted(each.items()))))
+    words = (file.path, content_digest, *file.expected_words, "", *file.offered_words, *meanings)
+    return hashlib.sha256("\n".join(words).encode("utf-8", "surrogatepass")).hexdigest()[:32]
+
 
 FileVerb = Literal["new", "changed", "merged", "same", "removed", "yours", "left", "edited", "foreign", "blocked"]
 """What is done with a file. The last three are not done: it stays as it is, and the run says why.
@@ -373,3 +412,51 @@ def _judge(
     if not (file.expected_words or file.offered_words):
         return CodeReport()
     return judge_own_code(file.path, data, read_contract(file.expected_words, file.offered_words), recorded, helpers)
+
+
+_IMPORT = re.compile(r"^[ \t]*(?:from|import)[ \t]+(?P<package>\w+)\.(?P<name>\w+)", re.MULTILINE)
+_INCLUDE = re.compile(r"^[ \t]*#[ \t]*include[ \t]+[\"<](?P<package>\w+)/(?P<name>[\w./]+)[\">]", re.MULTILINE)
+_NAMESPACE = re.compile(r"^[ \t]*(?:inline[ \t]+)?namespace[ \t]+(?P<package>\w+)", re.MULTILINE)
+
+
+def find_moved_packages(
+    path: str, data: bytes, wanted_files: Mapping[str, Collection[GeneratedFile]]
+) -> Iterator[CodeFinding]:
+    """Yield where a file imports or includes what its package has under another name of the package, and such namespaces.
+
+    `wanted_files` are those that are generated, by the last part of their paths.
+    """
+    text = data.decode("utf-8", "replace")
+    is_python = path.endswith(".py")
+    own_folder = "/".join(path.split("/")[:2])
+    found_names: list[tuple[re.Match[str], str]] = []
+    new_packages: dict[str, str] = {}
+    for found in (_IMPORT if is_python else _INCLUDE).finditer(text):
+        package, name = found["package"], f"{found['name']}.py" if is_python else found["name"]
+        alike = [each for each in wanted_files.get(name.rpartition("/")[2], ()) if each.path.endswith(f"/{name}")]
+        beside = [each for each in alike if each.path.startswith(f"{own_folder}/")]
+        if len(beside) == 1 and not any(each.path.endswith(f"/{package}/{name}") for each in alike):
+            new_package = beside[0].path.removesuffix(f"/{name}").rpartition("/")[2]
+            found_names.append((found, new_package))
+            # The module of a component called `clock` is no `rclpy.clock`: it alone says nothing of a package.
+            if not (is_python and beside[0].once):
+                new_packages[package] = new_package
+    # As the patch finds it: a dotted word, or a text.
+    frame = "{}.{}" if is_python else '"{}/{}"'
+    for found, new_package in found_names:
+        if found["package"] in new_packages:
+            names = (frame.format(each, found["name"]) for each in (found["package"], new_package))
+            yield _tell(text, found, f"`{found['package']}` has no `{found['name']}` any more", new_package, *names)
+    for found in () if is_python else _NAMESPACE.finditer(text):
+        if found["package"] in new_packages:
+            new_package = new_packages[found["package"]]
+            reason = "what is generated is in another namespace"
+            yield _tell(text, found, reason, new_package, found["package"], new_package)
+
+
+def _tell(  # noqa: PLR0913, PLR0917 - what a finding is made of
+    text: str, found: re.Match[str], reason: str, new_package: str, old_name: str, new_name: str
+) -> CodeFinding:
+    start = found.start("package")
+    line, column = text.count("\n", 0, start) + 1, start - text.rfind("\n", 0, start)
+    return CodeFinding(f"{reason}: it is `{new_package}` now", line, column, old_name=old_name, new_name=new_name)

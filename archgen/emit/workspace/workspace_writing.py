@@ -29,8 +29,7 @@ def lock_workspace(workspace: Path) -> Iterator[None]:
     """Keep other runs of archgen out of a workspace. Raise OutputError where one is at work."""
     folder = workspace / RECORD_FOLDER
     if folder.is_symlink():
-        msg = f"{folder} is a link"
-        raise OutputError(msg, "take the link away: archgen writes there what it made")
+        raise OutputError(f"{folder} is a link", "take the link away: archgen writes there what it made")
     try:
         with lock_folder(folder):
             yield

@@ -44,8 +44,7 @@ def write_workbook(outline: Outline) -> bytes:
     try:
         import xlsxwriter
     except ImportError:
-        message = "writing .xlsx needs the library XlsxWriter: `pip install XlsxWriter`"
-        raise XlsxWriterError(message) from None
+        raise XlsxWriterError("writing .xlsx needs the library XlsxWriter: `pip install XlsxWriter`") from None
     stream = io.BytesIO()
     # Text that begins with = + - or @ is text: from a stranger's project it must never run as a formula.
     options = {"in_memory": True, "strings_to_formulas": False, "strings_to_urls": False, "strings_to_numbers": False}

@@ -51,8 +51,7 @@ def fill_pattern(pattern: Pattern, bindings: Bindings, key: str = "") -> ViewVal
     if isinstance(pattern, TextPattern) and text is not None:
         return text
     if not isinstance(pattern, MappingPattern):
-        message = "a text is made of texts, and one of these variables stands for a list or a mapping"
-        raise EditError(message)
+        raise EditError("a text is made of texts, and one of these variables stands for a list or a mapping")
     return _fill_mapping(pattern, bindings, key)
 
 
@@ -67,11 +66,9 @@ def fill_key(pattern: Pattern, bindings: Bindings) -> str:
     """Return the text that stands as a key."""
     text = resolve_text(pattern, bindings)
     if text is None:
-        message = "a key is a text, and this variable stands for a list or a mapping"
-        raise EditError(message)
+        raise EditError("a key is a text, and this variable stands for a list or a mapping")
     if not text:
-        message = "a key is empty"
-        raise EditError(message, "leave out in `where` what gives no text")
+        raise EditError("a key is empty", "leave out in `where` what gives no text")
     return str(text)
 
 
@@ -80,8 +77,7 @@ def _fill_term(name: str, argument: Pattern, bindings: Bindings) -> str:
     items = argument.items if isinstance(argument, ListPattern) else (argument,)
     words = [fill_pattern(item, bindings, "type") for item in items]
     if not all(isinstance(word, str) for word in words):
-        message = f"`{name}` is made of the names of types, and one of these is none"
-        raise EditError(message)
+        raise EditError(f"`{name}` is made of the names of types, and one of these is none")
     return write_generic_name(f"{name}<{', '.join(map(str, words))}>")
 
 
@@ -119,8 +115,7 @@ def merge_data(view: ArchitectureView, kind: EditKind, path: TreePath, value: Vi
     elif kind == "set" or present is None or _is_empty(present):
         view.tree.set(path, make_data_node(value, span), source)
     elif not _is_same(present, value) and not (isinstance(value, dict) and not value):
-        message = f"`add` finds another value at `{'.'.join(map(str, path))}`"
-        raise EditError(message, "`set` replaces it")
+        raise EditError(f"`add` finds another value at `{'.'.join(map(str, path))}`", "`set` replaces it")
 
 
 def drop_data(view: ArchitectureView, path: TreePath, value: ViewValue) -> None:

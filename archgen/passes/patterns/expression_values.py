@@ -72,10 +72,9 @@ def evaluate_operand(operand: Operand, bindings: Bindings, view: PatternView) ->
         name = values[0]
         body = _find_element(name, view) if isinstance(name, str) else name
         if not isinstance(body, dict):
-            message = (
+            raise WrongValueError(
                 "`specialise` takes a type by its name, or all that it has: `$body` in `components: {$name: $body}`"
             )
-            raise WrongValueError(message)
         return bind_generic_type(body, stands_for)
     if operand.function == "without":
         return _leave_out(values[0], [_ask_text(value, operand) for value in values[1:]])
@@ -98,8 +97,7 @@ def _leave_out(value: ViewValue, left_out: Sequence[str]) -> ViewValue:
     if isinstance(value, list):
         return [item for item in value if item not in left_out]
     if not isinstance(value, dict):
-        message = "`without` takes a mapping or a list, and what it is to be without"
-        raise WrongValueError(message)
+        raise WrongValueError("`without` takes a mapping or a list, and what it is to be without")
     kept = ComponentBody({key: each for key, each in value.items() if key not in left_out})
     kept.path = value.path if isinstance(value, ComponentBody) else ""
     return kept
@@ -108,16 +106,14 @@ def _leave_out(value: ViewValue, left_out: Sequence[str]) -> ViewValue:
 def _ask_text(value: ViewValue, call: Call) -> str:
     if not isinstance(value, str):
         kind = "a list" if isinstance(value, list) else "nothing" if value is None else "a mapping"
-        message = f"`{call.function}` takes texts, and this is {kind}"
-        raise WrongValueError(message)
+        raise WrongValueError(f"`{call.function}` takes texts, and this is {kind}")
     return str(value)
 
 
 def _read_text(operand: TextOperand, bindings: Bindings) -> str:
     text = resolve_text(operand.pattern, bindings)
     if text is None:
-        message = "a text is made of texts, and one of these variables stands for a list or a mapping"
-        raise WrongValueError(message)
+        raise WrongValueError("a text is made of texts, and one of these variables stands for a list or a mapping")
     return text
 
 

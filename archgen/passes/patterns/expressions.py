@@ -89,8 +89,7 @@ def parse_where_condition(text: str) -> Condition:
     reader.expect_end()
     for side in (left, right):
         if isinstance(side, Call) and side.function in TEST_FUNCTIONS:
-            message = f"`{side.function}` says yes or no: it stands alone"
-            raise ExpressionError(message)
+            raise ExpressionError(f"`{side.function}` says yes or no: it stands alone")
     return Condition(left, operator, right, is_negated)
 
 
@@ -102,8 +101,7 @@ def parse_let_value(text: str) -> Operand:
     operand = reader.read_operand()
     reader.expect_end()
     if isinstance(operand, Call) and operand.function in TEST_FUNCTIONS:
-        message = f"`{operand.function}` says yes or no, and stands behind `where`"
-        raise ExpressionError(message)
+        raise ExpressionError(f"`{operand.function}` says yes or no, and stands behind `where`")
     return operand
 
 
@@ -161,8 +159,7 @@ class _Reader:
     def read_operand(self) -> Operand:
         self._depth += 1
         if self._depth > _MAX_DEPTH:
-            message = f"brackets stand more than {_MAX_DEPTH} deep inside of one another"
-            raise ExpressionError(message)
+            raise ExpressionError(f"brackets stand more than {_MAX_DEPTH} deep inside of one another")
         operand = self._read_operand()
         self._depth -= 1
         return operand
@@ -171,19 +168,16 @@ class _Reader:
         word = self._peek()
         if not word or word in {"==", "!=", ")", "]", ",", "=", "("}:
             found = f"`{word}`" if word else "the end"
-            message = f"a value is missing before {found} in `{self._text}`"
-            raise ExpressionError(message)
+            raise ExpressionError(f"a value is missing before {found} in `{self._text}`")
         self._at += 1
         if word == "[":
             items = list(self._read_items("]"))
             if not all(isinstance(item, OPERANDS) for item in items):
-                message = f"a list has no names: `=` is too much in `{self._text}`"
-                raise ExpressionError(message)
+                raise ExpressionError(f"a list has no names: `=` is too much in `{self._text}`")
             return ListOperand(tuple(item for item in items if isinstance(item, OPERANDS)))
         if word.startswith(_QUOTES):
             if len(word) == 1:
-                message = f"a quote is not closed in `{self._text}`"
-                raise ExpressionError(message)
+                raise ExpressionError(f"a quote is not closed in `{self._text}`")
             return TextOperand(parse_text_pattern(word[1:-1], word[1:-1], None))
         if self._peek() == "(":
             return self._read_call(word)
@@ -219,8 +213,7 @@ class _Reader:
             if self._peek() == "=":
                 self._at += 1
                 if not isinstance(operand, TextOperand):
-                    message = f"a name stands before `=` in `{self._text}`"
-                    raise ExpressionError(message)
+                    raise ExpressionError(f"a name stands before `=` in `{self._text}`")
                 yield (operand, self.read_operand())
             else:
                 yield operand
@@ -228,8 +221,7 @@ class _Reader:
                 self._at += 1
             elif self._peek() != end:
                 found = f"`{self._peek()}`" if self._peek() else "the end"
-                message = f"`,` or `{end}` is missing before {found} in `{self._text}`"
-                raise ExpressionError(message)
+                raise ExpressionError(f"`,` or `{end}` is missing before {found} in `{self._text}`")
         self._at += 1
 
     def expect_end(self) -> None:

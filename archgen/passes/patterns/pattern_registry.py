@@ -67,8 +67,6 @@ def read_pass(name: str, file: str, text: str, known_states: tuple[str, ...] = (
 
 
 class _PassFileReader:
-    """Reads one pass file."""
-
     def __init__(self, name: str, file: str, known_states: tuple[str, ...]) -> None:
         self._name = name
         self._file = file

@@ -202,16 +202,14 @@ def _decode_text(file: str, data: bytes, notes: NoteList) -> str:
     if data.startswith((b"\xff\xfe", b"\xfe\xff")):
         encoding = "utf-16"
     elif b"\x00" in data:
-        words = "it is no text"
-        raise ForeignFileError(words, Span.of_file(file), "save it as UTF-8")
+        raise ForeignFileError("it is no text", Span.of_file(file), "save it as UTF-8")
     else:
         encoding = "utf-8-sig"
     try:
         return data.decode(encoding).replace("\r\n", "\n").replace("\r", "\n")
     except UnicodeDecodeError as error:
         if encoding == "utf-16":
-            words = "it is no text in UTF-16"
-            raise ForeignFileError(words, Span.of_file(file), "save it as UTF-8") from None
+            raise ForeignFileError("it is no text in UTF-16", Span.of_file(file), "save it as UTF-8") from None
         line = data.count(b"\n", 0, error.start) + 1
         span = Span(file, line, 1, line, 2)
         notes.add(

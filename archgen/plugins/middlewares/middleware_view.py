@@ -27,8 +27,7 @@ from archgen.plugins.middlewares.middleware_classes import (
     record_outputs,
 )
 from archgen.plugins.middlewares.middleware_names import drop_clashes, name_member, name_space, shorten_wire_name
-from archgen.plugins.middlewares.middleware_types import MiddlewareTypes
-from archgen.plugins.middlewares.player_interfaces import OPAQUE
+from archgen.plugins.middlewares.middleware_types import OPAQUE, MiddlewareTypes
 from archgen.plugins.middlewares.simulated_timing import find_period, find_timing
 
 

@@ -57,8 +57,6 @@ def _list_definitions(folder: Path) -> list[Path]:
 
 
 class _OrcaReader:
-    """Reads one file."""
-
     def __init__(self, properties: list[OrcaProperty], file: str, taken: Counter[str], notes: list[ImportNote]) -> None:
         self._properties = properties
         self._file = file

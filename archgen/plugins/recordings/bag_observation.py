@@ -142,8 +142,6 @@ def _keep_common(profiles: Iterable[Mapping[str, str | None]]) -> dict[str, Any]
 
 @dataclass(slots=True)
 class _TopicCounter:
-    """What is counted of the messages of one topic."""
-
     message: str
     qos: dict[str, Any]
     has_header: bool

@@ -211,8 +211,7 @@ def _find_element(figure: _Figure, names: RecordedNames) -> tuple[str, SampleKin
     place = names.find_only_work(node_name, callback)
     if place.stored_input:
         if figure.kind == "period":
-            msg = "how often an input is stored is no figure of the design"
-            raise UnmappedError(msg)
+            raise UnmappedError("how often an input is stored is no figure of the design")
         return place.stored_input, "storing", False
     return place.activity, figure.kind, place.is_partial
 
@@ -221,6 +220,5 @@ def _find_chain(figure: _Figure, names: RecordedNames) -> str:
     if not figure.steps:
         if figure.name in names.chain_results:
             return figure.name
-        msg = "no chain of the design has this name"
-        raise UnmappedError(msg)
+        raise UnmappedError("no chain of the design has this name")
     return names.find_chain([names.name_step(step) for step in figure.steps])

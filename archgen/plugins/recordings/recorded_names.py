@@ -134,8 +134,7 @@ class RecordedNames:
         """
         activities = self._activities.get(self.find_node(node_name), [])
         if len(activities) != 1:
-            msg = "this node has several activities, and the name does not say which of them"
-            raise UnmappedError(msg)
+            raise UnmappedError("this node has several activities, and the name does not say which of them")
         activity = activities[0]
         read_inputs = [
             key
@@ -169,8 +168,7 @@ class RecordedNames:
         ]
         if len(matches) != 1:
             way = " - ".join(node_ids)
-            msg = f"{'several chains lead' if matches else 'no chain of the design leads'} through {way}"
-            raise UnmappedError(msg)
+            raise UnmappedError(f"{'several chains lead' if matches else 'no chain of the design leads'} through {way}")
         return matches[0]
 
     def _trace_nodes(self, recorded_steps: Sequence[str]) -> list[str]:

@@ -174,13 +174,11 @@ def _read_text(path: Path, source: RecordingSource) -> str:
     source.stream.seek(0)
     data = source.stream.read(MAX_BYTES + 1)
     if len(data) > MAX_BYTES:
-        msg = f"{path} is no recording that archgen knows, and has more than {MAX_BYTES:,} bytes"
-        raise RecordingRefusedError(msg)
+        raise RecordingRefusedError(f"{path} is no recording that archgen knows, and has more than {MAX_BYTES:,} bytes")
     try:
         return data.decode("utf-8-sig")
     except UnicodeDecodeError:
-        msg = f"{path} is not UTF-8 text"
-        raise RecordingRefusedError(msg) from None
+        raise RecordingRefusedError(f"{path} is not UTF-8 text") from None
 
 
 RecordingFormat = Literal["trace", "caret", "topic log", "bag", "figures"]
@@ -200,8 +198,7 @@ def find_recording_file(path: Path) -> Path:
         return path / BAG_METADATA
     if (path / "metadata").is_file() or any((path / name).is_dir() for name in ("ust", "kernel")):
         raise RecordingRefusedError(_explain_trace_folder(path))
-    msg = f"{path} is a folder, and neither that of a trace nor that of a bag (`{BAG_METADATA}`)"
-    raise RecordingRefusedError(msg)
+    raise RecordingRefusedError(f"{path} is a folder, and neither that of a trace nor that of a bag (`{BAG_METADATA}`)")
 
 
 def find_format(path: Path, source: RecordingSource) -> RecordingFormat:

@@ -89,14 +89,12 @@ def _read_archive(name: str, stream: IO[bytes], document: ReqifDocument) -> None
         with zipfile.ZipFile(stream) as archive:
             members = [each for each in archive.infolist() if each.filename.lower().endswith(".reqif")]
             if not members:
-                words = "there is no .reqif file in it"
-                raise ForeignFileError(words, Span.of_file(name), "export it again as ReqIF")
+                raise ForeignFileError("there is no .reqif file in it", Span.of_file(name), "export it again as ReqIF")
             for member in members:
                 with archive.open(member) as part:
                     parse_reqif(f"{name} [{member.filename}]", limit.read_chunks(part), document)
     except (*ARCHIVE_DAMAGE, OSError) as error:  # a member that begins before the file does, too
-        words = f"the zip file is damaged ({error})"
-        raise ForeignFileError(words, Span.of_file(name), "export it again") from None
+        raise ForeignFileError(f"the zip file is damaged ({error})", Span.of_file(name), "export it again") from None
 
 
 class _ByteLimit:

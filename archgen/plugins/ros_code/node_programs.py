@@ -7,13 +7,14 @@ their packages and executables are names of folders, files and modules.
 from __future__ import annotations
 
 import re
-from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
 from typing import Any
 
 from archgen.plugin import replace
 from archgen.plugin.findings import NO_SPAN, Diagnostic, Label, Severity, Span, first_written_span
 from archgen.plugin.generating import (
     NOT_GENERATED,
+    PORT_SECTIONS,
     GeneratedView,
     GenerationContext,
     ProgramNames,
@@ -37,7 +38,7 @@ from archgen.plugin.generating import (
     title_from_id,
     write_place,
 )
-from archgen.plugin.model import Architecture, Endpoint, Node
+from archgen.plugin.model import Architecture, ConceptualType, Endpoint, Node
 from archgen.plugin.ros import is_ros_1
 from archgen.plugins.ros_code.cpp_programs import (
     complete_cpp_program,
@@ -45,10 +46,8 @@ from archgen.plugins.ros_code.cpp_programs import (
     list_cpp_libraries,
 )
 from archgen.plugins.ros_code.interface_packages import find_refused_messages, list_unlisted_packages
-from archgen.plugins.ros_code.message_fields import list_message_fields
 from archgen.plugins.ros_code.package_facts import RosdepKeys, record_package_facts
 from archgen.plugins.ros_code.program_differences import find_program_differences, list_timers
-from archgen.plugins.ros_code.program_imports import IMPORTED_CLASSES, import_in_ros_1, import_in_ros_2
 
 
 def make_ros1_view(context: GenerationContext) -> GeneratedView:
@@ -407,3 +406,105 @@ def _name_groups(node: Node) -> dict[str, tuple[str, ...]]:
             key = f"{stem}_{number}"
         named[key] = members
     return named
+
+
+_PARTS: Mapping[str, Mapping[str, str]] = {
+    "srv": {"request": "/Request", "response": "/Response"},
+    "action": {"request": "/Goal", "response": "/Result", "feedback": "/Feedback"},
+}
+"""The classes of a service's and an action's parts, behind its own."""
+
+
+def list_message_fields(architecture: Architecture, type_names: Iterable[str]) -> list[dict[str, str]]:
+    """Return the fields of types and of what is in them: each with its message in front, and with the message that it is, if any."""
+    fields: dict[str, str] = {}
+    waiting, seen = sorted(type_names), set[str]()
+    while waiting:
+        type_name = waiting.pop()
+        data_type = architecture.types.get(type_name)
+        if data_type is None or type_name in seen or not data_type.message:
+            continue
+        seen.add(type_name)
+        for class_name, name, inner_name in _list_fields(data_type, data_type.message):
+            inner = architecture.types.get(inner_name)
+            fields[f"{class_name}.{name}"] = (inner.message if inner else None) or ""
+            waiting.append(inner_name)
+    return [{"name": name, "message": message} for name, message in sorted(fields.items())]
+
+
+def _list_fields(data_type: ConceptualType, message: str) -> Iterator[tuple[str, str, str]]:
+    """Yield each field of a type: its class, its name, and its type, without what makes a list of it."""
+    parts = _PARTS.get(message.split("/")[1], {})
+    for part, each in data_type.list_fields():
+        yield f"{message}{parts.get(part, '')}", each.name, (each.type or "").partition("[")[0]
+
+
+_IMPORTED_OF_ROS_2 = frozenset(
+    [
+        *("ActionClient", "ActionServer", "Clock", "ClockType", "Duration", "DurabilityPolicy"),
+        *("ExternalShutdownException", "FloatingPointRange", "Future", "GoalResponse", "HistoryPolicy", "IntegerRange"),
+        *("LifecycleNode", "LivelinessPolicy", "MultiThreadedExecutor", "MutuallyExclusiveCallbackGroup", "Node"),
+        *("NotActive", "Parameter", "ParameterDescriptor", "QoSProfile", "ReentrantCallbackGroup", "ReliabilityPolicy"),
+        *("SetParametersResult", "TransitionCallbackReturn"),
+    ]
+)
+"""What the modules of nodes import of rclpy: a message of this name is imported under another one."""
+_IMPORTED_OF_ROS_1 = frozenset(["RLock", "SimpleActionClient", "SimpleActionServer"])
+"""The same of rospy, actionlib and Python."""
+IMPORTED_CLASSES = _IMPORTED_OF_ROS_2 | _IMPORTED_OF_ROS_1
+"""What no class of a program is called: it would hide what its module imports."""
+_ROS_1_CLASSES: Mapping[str, Sequence[str]] = {
+    "services": ("", "Response"),
+    "action_servers": ("Action",),
+    "action_clients": ("Action",),
+}
+"""How the classes end that are imported for a port in ROS 1; of a topic it is the message alone."""
+_Sections = Mapping[str, Sequence[dict[str, object]]]
+
+
+def import_in_ros_2(sections: _Sections, class_name: str) -> list[dict[str, object]]:
+    """Return what is imported of which module, and tell each port the class of its message (`python_class`).
+
+    Messages of one name in several packages are told apart by their packages.
+    """
+
+    def list_classes(_section: str, port: Mapping[str, object]) -> tuple[str, list[str]]:
+        return f"{port['package']}.{port['kind']}", [str(port["name"])]
+
+    return _import_classes(
+        sections, list_classes, {class_name, f"{class_name}Node", f"{class_name}StandIn", *_IMPORTED_OF_ROS_2}
+    )
+
+
+def import_in_ros_1(sections: _Sections, class_name: str) -> list[dict[str, object]]:
+    """Return the same for ROS 1.
+
+    There the response of a service is a class of its own (`part_class`), and an action is a message.
+    """
+
+    def list_classes(section: str, port: Mapping[str, object]) -> tuple[str, list[str]]:
+        module = "srv" if port["kind"] == "srv" else "msg"
+        return f"{port['package']}.{module}", [f"{port['name']}{end}" for end in _ROS_1_CLASSES.get(section, ("",))]
+
+    return _import_classes(sections, list_classes, {class_name, f"{class_name}Node", *_IMPORTED_OF_ROS_1})
+
+
+def _import_classes(
+    sections: _Sections,
+    list_classes: Callable[[str, Mapping[str, object]], tuple[str, list[str]]],
+    taken_names: Collection[str],
+) -> list[dict[str, object]]:
+    listed = [(port, *list_classes(section, port)) for section in PORT_SECTIONS.values() for port in sections[section]]
+    modules_by_name: dict[str, set[str]] = {}
+    for _, module, names in listed:
+        for name in names:
+            modules_by_name.setdefault(name, set()).add(module)
+    imports: dict[str, set[str]] = {}
+    for port, module, names in listed:
+        classes = []
+        for name in names:
+            is_taken = len(modules_by_name[name]) > 1 or name in taken_names
+            classes.append(f"{make_camel_name(module)}{name}" if is_taken else name)
+            imports.setdefault(module, set()).add(f"{name} as {classes[-1]}" if is_taken else name)
+        port["python_class"], port["part_class"] = classes[0], classes[-1]
+    return [{"module": module, "names": sorted(each)} for module, each in sorted(imports.items())]

@@ -132,17 +132,14 @@ def parse_heading_map(texts: tuple[str, ...]) -> HeadingMap:
     for text in texts:
         heading, equals, target = (part.strip() for part in text.rpartition("="))
         if not equals or not heading or not target:
-            msg = f"'{text}' is no heading with its meaning: write \"Baugruppe=group\""
-            raise ValueError(msg)
+            raise ValueError(f"'{text}' is no heading with its meaning: write \"Baugruppe=group\"")
         key = KEY_BY_HEADING.get(fold_heading(target))
         if key is None:
             nearest = find_closest(fold_heading(target), KEY_BY_HEADING)
             guess = f"did you mean {KEY_BY_HEADING[nearest]}? " if nearest else ""
-            msg = f"'{target}' is nothing that a column can mean. {guess}Columns mean: {', '.join(TARGETS)}"
-            raise ValueError(msg)
+            raise ValueError(f"'{target}' is nothing that a column can mean. {guess}Columns mean: {', '.join(TARGETS)}")
         if heading_map.setdefault(fold_heading(heading), key) != key:
-            msg = f"'{heading}' is mapped twice, to {heading_map[fold_heading(heading)]} and to {key}"
-            raise ValueError(msg)
+            raise ValueError(f"'{heading}' is mapped twice, to {heading_map[fold_heading(heading)]} and to {key}")
     return heading_map
 
 

@@ -7,8 +7,8 @@ from typing import NamedTuple
 from archgen.plugin.importing import MAX_ID_LENGTH, make_id, make_unique_id
 from archgen.plugins.tables import cell_values, declaration_rows, port_lists
 from archgen.plugins.tables.imported_project import UNSORTED, ImportedComponent, ImportedInput, ImportedProject
-from archgen.plugins.tables.row_records import TableRecord
 from archgen.plugins.tables.table_cells import TableCell
+from archgen.plugins.tables.table_records import TableRecord
 
 
 class ConnectionEnd(NamedTuple):
@@ -85,7 +85,6 @@ def _take_ends(
 def _report_open_input(
     project: ImportedProject, row: TableRecord, source: ConnectionEnd | None, target: ConnectionEnd | None
 ) -> None:
-    """Report a connection without a source."""
     if source is None and target is not None:
         message = f"nothing says where this comes from: the input of `{target.component.name}` has no source yet"
         project.add_warning("missing-key", message, row.first_cell.span, "fill in the component that gives it")

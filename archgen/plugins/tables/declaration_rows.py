@@ -10,8 +10,8 @@ import re
 from archgen.plugin.importing import make_id, make_unique_id
 from archgen.plugins.tables import cell_values, port_lists
 from archgen.plugins.tables.imported_project import UNSORTED, ImportedComponent, ImportedGroup, ImportedProject
-from archgen.plugins.tables.row_records import TableRecord
 from archgen.plugins.tables.table_cells import TableCell
+from archgen.plugins.tables.table_records import TableRecord
 
 _ROLE_SPELLINGS = {
     "source": "source; sensor; quelle; capteur; fuente; origen",

@@ -25,13 +25,11 @@ class OfficeFile:
     def __init__(self, data: bytes) -> None:
         """Open the file. Raise UnreadableOfficeFileError."""
         if len(data) > MAX_OFFICE_BYTES:
-            msg = f"it is larger than {MAX_OFFICE_BYTES // 1024 // 1024} MiB"
-            raise UnreadableOfficeFileError(msg)
+            raise UnreadableOfficeFileError(f"it is larger than {MAX_OFFICE_BYTES // 1024 // 1024} MiB")
         try:
             self._archive = zipfile.ZipFile(io.BytesIO(data))
         except _DAMAGE as error:
-            msg = f"the file is damaged ({error})"
-            raise UnreadableOfficeFileError(msg) from None
+            raise UnreadableOfficeFileError(f"the file is damaged ({error})") from None
         # Together: many sheets, each within its limit, would take as long as one that is too large.
         self._bytes_left = 2 * MAX_OFFICE_BYTES
         self.names = frozenset(self._archive.namelist())
@@ -52,8 +50,7 @@ class OfficeFile:
             parser = etree.XMLParser(resolve_entities=False, no_network=True, load_dtd=False, huge_tree=False)
             return etree.fromstring(content, parser)
         except (etree.XMLSyntaxError, *_DAMAGE) as error:
-            msg = f"its part {name} cannot be read ({error})"
-            raise UnreadableOfficeFileError(msg) from None
+            raise UnreadableOfficeFileError(f"its part {name} cannot be read ({error})") from None
 
     def targets_of(self, name: str) -> dict[str, str]:
         """Return the names of the parts that a part refers to, by the id of the reference."""

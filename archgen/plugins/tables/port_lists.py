@@ -8,8 +8,8 @@ from archgen.plugin.importing import make_id, make_unique_id
 from archgen.plugin.ros import full_message_name
 from archgen.plugins.tables import cell_values
 from archgen.plugins.tables.imported_project import ImportedComponent, ImportedInput, ImportedProject, fold_name
-from archgen.plugins.tables.row_records import TableRecord
 from archgen.plugins.tables.table_cells import TableCell
+from archgen.plugins.tables.table_records import TableRecord
 
 _NONE_WORDS = frozenset(
     {"none", "nothing", "no", "no inputs", "no outputs", "keine", "keiner", "kein", "keines", "nichts", "nein"}

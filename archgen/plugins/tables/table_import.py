@@ -28,9 +28,8 @@ from archgen.plugins.tables.imported_project import (
     ImportedInput,
     ImportedProject,
 )
-from archgen.plugins.tables.row_records import TableRecord
 from archgen.plugins.tables.table_cells import CellLedger, CellUse, TableCell
-from archgen.plugins.tables.table_records import TableReport
+from archgen.plugins.tables.table_records import TableRecord, TableReport
 
 
 @dataclass(frozen=True, slots=True)

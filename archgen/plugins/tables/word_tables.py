@@ -18,8 +18,7 @@ def read_word_tables(file: str, document: OfficeFile) -> list[TableSheet]:
     """Read all tables in their order; one inside a cell is a part of its text. Raise UnreadableOfficeFileError."""
     root = document.read_part("word/document.xml")
     if root is None or root.tag != f"{_WORD}document":
-        msg = "it is no .docx"
-        raise UnreadableOfficeFileError(msg)
+        raise UnreadableOfficeFileError("it is no .docx")
     outer_tables = [
         table for table in root.iter(f"{_WORD}tbl") if next(table.iterancestors(f"{_WORD}tbl"), None) is None
     ]

@@ -114,8 +114,7 @@ def read_workbook(file: str, workbook: OfficeFile, diagnostics: list[Diagnostic]
     root = workbook.read_part(_WORKBOOK)
     if root is None or root.tag != f"{_MAIN}workbook":
         kind = "of the form `Strict Open XML`" if root is not None and _STRICT_MAIN in str(root.tag) else "no .xlsx"
-        msg = f"it is {kind}"
-        raise UnreadableOfficeFileError(msg)
+        raise UnreadableOfficeFileError(f"it is {kind}")
     properties = root.find(f"{_MAIN}workbookPr")
     begins_1904 = properties is not None and properties.get("date1904") in {"1", "true"}
     formats = CellFormats.read_styles(workbook.read_part("xl/styles.xml"), begins_1904=begins_1904)

@@ -6,8 +6,7 @@ from collections import ChainMap, defaultdict
 from collections.abc import Iterable, Mapping
 
 from archgen.plugin.importing import XmlElement, make_unique_id, title_from_id
-from archgen.plugins.xmi.class_features import ClassFeatures
-from archgen.plugins.xmi.component_assembly import ComponentAssembly
+from archgen.plugins.xmi.component_assembly import ClassFeatures, ComponentAssembly
 from archgen.plugins.xmi.component_facts import ClassFacts
 from archgen.plugins.xmi.import_ledger import OWN_PREFIX, choose_id, make_hints, name_element, say_title
 from archgen.plugins.xmi.port_facts import PortFacts, get_interface_name

@@ -290,8 +290,7 @@ def _make_document(file: str, name: str, data: bytes) -> XmiDocument:
         raise ForeignFileError(words, root.span(file), help_line)
     if not models:
         words = f"there is no UML model in it: its outermost element is `{root.tag[:60]}`"
-        help_line = "export the model from your tool as XMI 2.x (UML 2)"
-        raise ForeignFileError(words, root.span(file), help_line)
+        raise ForeignFileError(words, root.span(file), "export the model from your tool as XMI 2.x (UML 2)")
     return XmiDocument(file, name, root, models)
 
 

@@ -102,11 +102,9 @@ def share_chain_budget(trials: ChangeTrials, result: ChainResult) -> SharedBudge
 class _BudgetSearch:
     def __init__(self, trials: ChangeTrials, result: ChainResult) -> None:
         if result.deadline is None or result.deadline.value is None:
-            msg = "it has no deadline"
-            raise UnknownBudgetError(msg)
+            raise UnknownBudgetError("it has no deadline")
         if result.verdict == "open" or not result.terms:
-            msg = "figures are missing"
-            raise UnknownBudgetError(msg)
+            raise UnknownBudgetError("figures are missing")
         self.trials, self.result, self.deadline = trials, result, result.deadline.value
         self.slack = result.slack if result.verdict == "met" else None
         architecture, self.elements = trials.architecture, list_chain_elements(trials.analysis, result)

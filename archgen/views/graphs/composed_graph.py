@@ -107,8 +107,6 @@ def draw_composed(lookup: Lookup, shell_id: str, depth: int = 0) -> Graph:
 
 @dataclass(frozen=True, slots=True)
 class _ComposedDrawing:
-    """Draws one composed component."""
-
     lookup: Lookup
     shell: Component
     opened: frozenset[str] = frozenset()

@@ -9,15 +9,12 @@ import dataclasses
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 
 from archgen.diagnostics import Diagnostic, join_first, join_words
-from archgen.model.component import Component
-from archgen.model.requirement import Requirement
 from archgen.timing.analysis import ChainResult
 from archgen.timing.chains.chain_advice import advise_on_chain, find_deciding_term, sum_known_parts
 from archgen.timing.figures.timing_values import TimingValue
-from archgen.views import element_references, inline_text, requirement_servers
+from archgen.views import element_references, inline_text
 from archgen.views.agreement import exchange_tables
 from archgen.views.agreement.interface_terms import InterfaceTerms
-from archgen.views.changes.comparison_outline import write_comparison_outline
 from archgen.views.elements.functional_level import first_sentence
 from archgen.views.inline_text import count_noun
 from archgen.views.lookup import Lookup
@@ -26,9 +23,11 @@ from archgen.views.pages.partner_spreads import head_part
 from archgen.views.pages.report_outline import DocumentEdition
 from archgen.views.pages.timing_chapter import make_figures
 from archgen.views.report import front_pages
+from archgen.views.report.changes_page import print_plainly, tell_changes
 from archgen.views.report.data_sheets import number_sheets
 from archgen.views.report.printed_figures import print_section_figures
 from archgen.views.report.report_drawings import make_report_drawings
+from archgen.views.report.requirement_proofs import make_requirements
 from archgen.views.sequences import sequence_charts
 from archgen.views.sequences.sequence_blocks import make_short_steps
 from archgen.views.shapes import (
@@ -47,7 +46,7 @@ from archgen.views.shapes import (
     drop_empty_columns,
     make_columns,
 )
-from archgen.views.tables import deployment_tables, finding_tables, requirement_tables
+from archgen.views.tables import deployment_tables, finding_tables
 from archgen.views.timing import chain_charts, chain_status, element_timing, timing_tables
 from archgen.views.timing.chain_waterfall import make_waterfall
 
@@ -59,13 +58,10 @@ _MAX_ROWS_ABOVE = 8
 """With more chains in the table of all the first one that is told begins a page."""
 _MAX_SUMMARY_CHAINS = 3
 _MAX_DECISIONS = 2
-_MAX_REQUIREMENTS = 100
-"""Of more requirements those are listed that are not met."""
 _MAX_POINTS = 4
 """So many findings of one rule, to one partner, have rows of their own."""
 _MAX_NAMED_SHEETS = 250
 """Of more components the list of data sheets has no names."""
-_STATE_RANKS = {"uncovered": 0, "missed": 1, "not proven": 2, "open": 3, "met": 4}
 
 
 def make_deliverable(lookup: Lookup, edition: DocumentEdition) -> Outline:
@@ -75,7 +71,10 @@ def make_deliverable(lookup: Lookup, edition: DocumentEdition) -> Outline:
     names = edition.chapter_names
     # The summary is read first, wherever the project has its overview.
     ordered = sorted(names, key=lambda name: name != "overview") if lookup.scope.components is None else names
-    sections = [*printer.tell_changes(), *(part for name in ordered for part in printer.print_chapter(name))]
+    sections = [
+        *tell_changes(lookup.architecture, edition.changes),
+        *(part for name in ordered for part in printer.print_chapter(name)),
+    ]
     sections += printer.list_elsewhere()
     return Outline(
         title=lookup.architecture.project.title,
@@ -106,7 +105,7 @@ class DeliverablePrinter:
             yield from make_section(self)
             return
         for section in report_outline.make_chapter(self.lookup, self.edition, name):
-            yield dataclasses.replace(_print_plainly(section), appendix=False)
+            yield dataclasses.replace(print_plainly(section), appendix=False)
 
     def make_summary(self) -> Iterator[Section]:
         """Yield the summary: counts, the picture of the groups, whether it reacts in time, what is decided next."""
@@ -195,58 +194,6 @@ class DeliverablePrinter:
         # Where nobody can be named it is a question.
         joint = Text(": " if any(run.ref for run in who) else " ")
         return (*(dataclasses.replace(run, strong=True) for run in who), *((joint,) if who else ()), *words)
-
-    def tell_changes(self) -> Iterator[Section]:
-        """Yield the page of what changed since the last version, where that is compared."""
-        changes = self.edition.changes
-        if changes is None:
-            return
-        document = changes.document
-        blocks: list[Block] = [Paragraph(inline_text.message_to_inlines(f"{document.headline}."))]
-        blocks += [
-            Paragraph(inline_text.message_to_inlines(f"It breaks {join_words(document.broken_partners)}."), "warning")
-            for _ in document.broken_partners[:1]
-        ]
-        outline = write_comparison_outline(document)
-        shown = {"changes:breaking", "changes:boundaries", "changes:loads", "changes:chains"}
-        sections = [self._name_chains(_print_plainly(each)) for each in outline.sections if each.anchor in shown]
-        counts = [
-            (
-                Text(group.title or group.group_id, strong=True),
-                Text(f": {count_noun(len(group.changes), 'change')}, first: "),
-                *inline_text.message_to_inlines(group.changes[0].text),
-            )
-            for group in document.change_groups
-            if group.changes
-        ]
-        if counts:
-            sections.append(Section("changes:all", document.changes_heading, (Bullets(tuple(counts)),)))
-        if document.concerned_partners:
-            asked = Paragraph(inline_text.to_inlines(f"It concerns {join_words(document.concerned_partners)}."))
-            sections.append(Section("changes:asked", "What it asks of whom", (asked,)))
-        title = f"What changed since {changes.since}"
-        yield Section("page:changes", title, tuple(blocks), tuple(sections), page_break=True)
-
-    def _name_chains(self, section: Section) -> Section:
-        """Return a section of a comparison with chains by their titles, in tables without numbers."""
-        chains = self.architecture.chains
-        blocks = [
-            dataclasses.replace(
-                block,
-                numbered=False,
-                dense=True,
-                rows=tuple(
-                    tuple(
-                        (Text(chains[cell[0].text].title),) if cell and cell[0].text in chains else cell for cell in row
-                    )
-                    for row in block.rows
-                ),
-            )
-            if isinstance(block, Table)
-            else block
-            for block in section.blocks
-        ]
-        return dataclasses.replace(section, blocks=tuple(blocks))
 
     def make_use_cases(self) -> Iterator[Section]:
         """Yield the chapter of use cases, each on about half a page."""
@@ -376,78 +323,6 @@ class DeliverablePrinter:
         """Yield the chapter of variants, without what differs in each: the table counts it."""
         for section in report_outline.make_chapter(self.lookup, self.edition, "variants"):
             yield dataclasses.replace(section, sections=(), page_break=False)
-
-    def make_requirements(self) -> Iterator[Section]:
-        """Yield the chapter of requirements with what proves each, first what nobody serves."""
-        requirements = requirement_tables.shown_requirements(self.lookup)
-        if not requirements:
-            return
-        # Of those that are met, what a chain proves comes before what a trial has to show.
-        ranked = sorted(
-            requirements,
-            key=lambda each: (
-                _STATE_RANKS[self._judge(each)],
-                each.id not in self.lookup.chains_for_requirement and not each.verified_by,
-            ),
-        )
-        shown = ranked if len(ranked) <= _MAX_REQUIREMENTS else [each for each in ranked if self._judge(each) != "met"]
-        shown = shown[:_MAX_REQUIREMENTS]
-        served = [each for each in requirements if requirement_servers.is_served(self.lookup, each)]
-        lead = f"{len(served)} of {len(requirements)} are served. Those that nobody serves stand first, then those without proof."
-        if len(shown) < len(ranked):
-            lead += f" The other {len(ranked) - len(shown)} stand in the workbook."
-        rows = tuple(self._trace_requirement(each) for each in shown)
-        columns = make_columns(
-            ("Id", 0.5), ("Requirement", 2.6), ("By, components", 1.4), ("Use cases", 0.9), ("Proof", 1.7)
-        )
-        table = Table("table:requirements", "Requirements", columns, rows, numbered=False, dense=True)
-        blocks = (Paragraph(inline_text.to_inlines(lead)), drop_empty_columns(table))
-        yield Section("page:requirements", "Requirements, and what proves them", blocks, page_break=True)
-
-    def _judge(self, requirement: Requirement) -> str:
-        """Return the state of a requirement; of one that only a trial can show, that it is open."""
-        state = self.lookup.requirement_trace.judge(requirement.id)
-        chains = self.lookup.chains_for_requirement.get(requirement.id, ())
-        verdicts = [requirement_servers.describe_chain_state(self.lookup, each) for each in chains]
-        return "not proven" if state == "open" and "not proven" in verdicts else state
-
-    def _trace_requirement(self, requirement: Requirement) -> tuple[Inlines, ...]:
-        lookup = self.lookup
-        servers = list(lookup.components_for_requirement.get(requirement.id, ()))
-        owners = dict.fromkeys(owner for component in servers for owner in component.owners)
-        by = (
-            (*inline_text.owner_links(self.architecture, owners), Text(f" {len(servers)}", muted=True))
-            if servers
-            else ()
-        )
-        return (
-            inline_text.to_inlines(Text(requirement.id, strong=True)),
-            inline_text.to_inlines(requirement.title),
-            by,
-            inline_text.join_inlines(requirement_tables.use_case_link(lookup, name) for name in requirement.use_cases),
-            self._prove(requirement, servers),
-        )
-
-    def _prove(self, requirement: Requirement, servers: Sequence[Component]) -> Inlines:
-        """Return what proves a requirement: the verdict of a chain, what verifies it, else the figures of a trial."""
-        lookup = self.lookup
-        if not requirement_servers.is_served(lookup, requirement):
-            return (Text("nobody serves it", status="uncovered"),)
-        results = {result.id: result for result in (lookup.timing.chains if lookup.timing else ())}
-        lines: list[Inlines] = []
-        for chain in lookup.chains_for_requirement.get(requirement.id, ()):
-            if result := results.get(chain.id):
-                figures = (
-                    *timing_tables.duration_cell(result.bound),
-                    Text(" of "),
-                    *timing_tables.deadline_cell(result),
-                )
-                lines.append((*chain_status.verdict_chip(result), Text(" "), *(figures if result.deadline else ())))
-        lines += requirement_servers.list_verifiers(lookup, requirement)
-        if not lines:
-            told = [each.accuracy for component in servers for each in component.performance if each.accuracy]
-            lines = [inline_text.to_inlines(Text(f"to be tried: {join_first(told, 1)}", muted=True))] if told else []
-        return inline_text.join_lines(lines) or (Text(self._judge(requirement), muted=True),)
 
     def make_open_points(self) -> Iterator[Section]:
         """Yield the chapter of open points, by who must act: findings, chains, terms that a partner owes others."""
@@ -599,14 +474,6 @@ _SHORT_CHAPTERS: Mapping[str, Callable[[DeliverablePrinter], Iterable[Section]]]
     "chains": DeliverablePrinter.make_chains,
     "variants": DeliverablePrinter.make_variants,
     "deployment": DeliverablePrinter.make_deployment,
-    "requirements": DeliverablePrinter.make_requirements,
+    "requirements": lambda printer: make_requirements(printer.lookup),
     "open_points": DeliverablePrinter.make_open_points,
 }
-
-
-def _print_plainly(section: Section) -> Section:
-    """Return a section with tables that stay on upright paper."""
-    blocks = tuple(
-        dataclasses.replace(block, wide=False) if isinstance(block, Table) else block for block in section.blocks
-    )
-    return dataclasses.replace(section, blocks=blocks, sections=tuple(map(_print_plainly, section.sections)))

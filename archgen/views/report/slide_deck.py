@@ -20,6 +20,7 @@ from archgen.views.pages.partner_spreads import make_spread_writer
 from archgen.views.pages.report_outline import DocumentEdition
 from archgen.views.pages.timing_chapter import make_figures
 from archgen.views.report import front_pages
+from archgen.views.report.changes_page import tell_changes
 from archgen.views.report.deliverable import DeliverablePrinter
 from archgen.views.report.printed_figures import print_section_figures
 from archgen.views.shapes import (
@@ -189,7 +190,7 @@ class _SlideMaker:
 
     def tell_changes(self) -> Iterator[Section]:
         """Yield what changed since the version that is compared: the headline, then each kind of change."""
-        for section in self.printer.tell_changes():
+        for section in tell_changes(self.architecture, self.edition.changes):
             parts = [block for part in section.sections for block in (_head(part.title), *part.blocks)]
             yield dataclasses.replace(section, anchor="slide:changes", blocks=(*section.blocks, *parts), sections=())
 

@@ -9,7 +9,7 @@ import zipfile
 import pytest
 
 from archgen.emit.docx import write
-from archgen.emit.docx.bars import format_bar
+from archgen.emit.docx.text_pieces import format_bar
 from archgen.views.shapes import Column, Meter, Outline, Section, Table, Text, WaterfallPiece
 
 

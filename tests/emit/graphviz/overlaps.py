@@ -4,7 +4,17 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 
-from archgen.emit.graphviz.placed_scene import Scene, rectangles_meet
+from archgen.emit.graphviz.placed_scene import Rectangle, Scene
+
+
+def rectangles_meet(first: Rectangle, second: Rectangle, gap: float) -> bool:
+    """Return whether two rectangles overlap, or are nearer to each other than a gap."""
+    return (
+        first[0] < second[2] + gap
+        and second[0] < first[2] + gap
+        and first[1] < second[3] + gap
+        and second[1] < first[3] + gap
+    )
 
 
 def overlapping_parts(scene: Scene) -> Iterable[tuple[str, str]]:

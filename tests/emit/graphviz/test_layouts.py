@@ -15,14 +15,14 @@ from archgen.emit.graphviz import graph_drawing
 from archgen.emit.graphviz.box_styles import style_box
 from archgen.emit.graphviz.framed_layout import lay_out_framed
 from archgen.emit.graphviz.label_places import declutter_labels
-from archgen.emit.graphviz.placed_scene import Scene, SceneLine, ScenePart, rectangles_meet
+from archgen.emit.graphviz.placed_scene import Scene, SceneLine, ScenePart
 from archgen.emit.graphviz.styled_graph import style_graph
 from archgen.model.architecture import View
 from archgen.views.graphs import draw_group, make_all_graphs
 from archgen.views.lookup import make_lookup
 from archgen.views.picture_shapes import Arrow, Box, Cluster, Graph
 from tests.architectures import generated, robot
-from tests.emit.graphviz.overlaps import overlapping_parts
+from tests.emit.graphviz.overlaps import overlapping_parts, rectangles_meet
 from tests.property_sizes import list_seeds, mark_further_samples
 from tests.timings import timed
 

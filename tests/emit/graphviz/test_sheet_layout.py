@@ -5,7 +5,7 @@ from __future__ import annotations
 from lxml import etree
 
 from archgen.emit.graphviz import draw_pictures
-from archgen.emit.graphviz.sheet_layout import lay_out_sheet
+from archgen.emit.graphviz.graph_drawing import lay_out_sheet
 from archgen.views.picture_shapes import Sheet, SheetBar, SheetLine, SheetText
 
 HOSTILE = '<script>alert(1)</script>"]; evil [label="x\x00'

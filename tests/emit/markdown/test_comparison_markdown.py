@@ -14,7 +14,7 @@ from archgen.compare.comparison import PartnerBreak
 from archgen.diagnostics.diagnostic import Severity
 from archgen.diagnostics.source_span import Span
 from archgen.emit.markdown import comparison_markdown
-from archgen.emit.markdown.limited_comment import MAX_COMMENT_SIZE
+from archgen.emit.markdown.comparison_markdown import MAX_COMMENT_SIZE
 from archgen.model.project_settings import AcceptedChange, BreakPolicy
 from archgen.products.compared_versions import ProjectVersion, compare_named_versions
 from archgen.views.changes.comparison_document import ReadingErrors, describe_comparison

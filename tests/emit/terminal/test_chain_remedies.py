@@ -6,7 +6,7 @@ from fractions import Fraction
 
 import pytest
 
-from archgen.emit.terminal import chain_gaps, chain_remedies
+from archgen.emit.terminal import chain_remedies, timing_text
 from archgen.frozen import replace
 from archgen.timing.analysis import LateRun
 from archgen.timing.search.change_trials import TriedChange
@@ -24,17 +24,17 @@ MS = Fraction(10**6)
 def test_what_is_left_of_a_deadline(deadline: str, text: str) -> None:
     nodes = {"a @p": "period: 96 ms, wcet: 2 ms", "b @p": "wcet: 3 ms"}
     model = read_sketch(nodes, "a>b", f"hosts: {{p: {{cores: 1}}}}\nchains: {{c: {{through: [a, b]{deadline}}}}}")
-    assert chain_gaps.describe_slack(bound_with(model)["c"]) == text
+    assert timing_text.describe_slack(bound_with(model)["c"]) == text
 
 
 def test_a_witness_is_told_with_the_command_that_repeats_it() -> None:
     result = bound_with(
         read_sketch({"a @p": "period: 96 ms"}, "", "hosts: {p: {cores: 1}}\nchains: {c: {through: [a]}}")
     )["c"]
-    assert chain_gaps.describe_late_run(replace(result, late_run=LateRun(17, 60, 163 * MS))) == (
+    assert timing_text.describe_late_run(replace(result, late_run=LateRun(17, 60, 163 * MS))) == (
         "seen in `archgen simulate --chain c --seed 17 --seconds 60`: 163 ms"
     )
-    assert not chain_gaps.describe_late_run(result)
+    assert not timing_text.describe_late_run(result)
 
 
 def _propose(bounds: list[dict[str, int | None]], hopeless: dict[str, Fraction] | None = None) -> Proposal:

@@ -17,7 +17,7 @@ import yaml
 from hypothesis import example, given
 from hypothesis import strategies as st
 
-from archgen.emit.text import code_filters
+from archgen.emit.text import template_filters
 from tests.outside_tools import find_tool, run_judge
 
 HOSTILE = (
@@ -58,7 +58,7 @@ def _plain(text: str) -> str:
 @given(TEXTS)
 @example("\ud800")
 def test_a_string_of_python(text: str) -> None:
-    written = code_filters.write_python_string(text)
+    written = template_filters.write_python_string(text)
     assert written.isascii()
     assert written.isprintable()
     assert ast.literal_eval(written) == text
@@ -67,13 +67,13 @@ def test_a_string_of_python(text: str) -> None:
 @given(TEXTS)
 def test_a_word_of_the_shell(text: str) -> None:
     wanted = text.replace("\0", "")
-    assert shlex.split(code_filters.write_shell_word(text)) == [wanted]
+    assert shlex.split(template_filters.write_shell_word(text)) == [wanted]
 
 
 @pytest.mark.parametrize("shell", ["sh", "bash"])
 def test_shells_read_words_back(shell: str) -> None:
     texts = [_plain(text).replace("\0", "") for text in HOSTILE]
-    script = "printf '%s\\0' " + " ".join(code_filters.write_shell_word(text) for text in texts)
+    script = "printf '%s\\0' " + " ".join(template_filters.write_shell_word(text) for text in texts)
     done = subprocess.run([shell, "-c", script], capture_output=True, check=True)  # noqa: S603 - printf
     assert done.stdout.decode().split("\0")[:-1] == texts
     assert done.stderr == b""
@@ -81,7 +81,7 @@ def test_shells_read_words_back(shell: str) -> None:
 
 @given(TEXTS | st.integers() | st.booleans() | st.none() | st.floats(allow_nan=False))
 def test_a_scalar_of_yaml(value: object) -> None:
-    written = code_filters.write_yaml_scalar(value)
+    written = template_filters.write_yaml_scalar(value)
     assert len(written.splitlines()) == 1
     expected = _plain(value) if isinstance(value, str) else value
     assert yaml.safe_load(f"a: [{written}, x]\nb: {written}\n") == {"a": [expected, "x"], "b": expected}
@@ -90,7 +90,7 @@ def test_a_scalar_of_yaml(value: object) -> None:
 
 @given(TEXTS)
 def test_text_of_xml(text: str) -> None:
-    written = code_filters.write_xml(text)
+    written = template_filters.write_xml(text)
     document = ET.fromstring(f"<a b=\"{written}\" c='{written}'>{written}</a>")  # noqa: S314 - just made
     wanted = "".join(
         each
@@ -104,12 +104,12 @@ def test_text_of_xml(text: str) -> None:
 
 @given(TEXTS)
 def test_a_comment_on_one_line(text: str) -> None:
-    written = code_filters.write_line_comment(text)
+    written = template_filters.write_line_comment(text)
     assert len(f"x{written}".splitlines()) == 1
     assert not any(mark in f"{written} " for mark in ("*/", "/*", "?>", "-->", "--", "??", "\\", "\n", "\r", "\0"))
     tokens = list(tokenize.generate_tokens(io.StringIO(f"# {written}\nx = 1\n").readline))
     assert [each.type for each in tokens][:2] == [tokenize.COMMENT, tokenize.NL]
-    document = ET.fromstring(f"<a><!-- {code_filters.write_xml(written)} --><b/></a>")  # noqa: S314 - just made
+    document = ET.fromstring(f"<a><!-- {template_filters.write_xml(written)} --><b/></a>")  # noqa: S314 - just made
     assert [each.tag for each in document] == ["b"]
 
 
@@ -130,10 +130,10 @@ def test_strings_and_comments_of_cpp(tmp_path: Path) -> None:
     data = [text.encode() for text in texts]
     code = CPP.format(
         comments="\n".join(
-            f"// {code_filters.write_line_comment(text)}\n/* {code_filters.write_line_comment(text)} */"
+            f"// {template_filters.write_line_comment(text)}\n/* {template_filters.write_line_comment(text)} */"
             for text in HOSTILE
         ),
-        texts=", ".join(code_filters.write_cpp_string(text) for text in texts),
+        texts=", ".join(template_filters.write_cpp_string(text) for text in texts),
         sizes=", ".join(str(len(each)) for each in data),
         count=len(data),
     )
@@ -164,14 +164,14 @@ def _read_java(written: str) -> str:
 @given(TEXTS)
 def test_a_string_of_java(text: str) -> None:
     # Joined halves are one character: pairs are compared.
-    assert _read_java(code_filters.write_java_string(text)) == text.encode("utf-16-be", "surrogatepass").decode(
+    assert _read_java(template_filters.write_java_string(text)) == text.encode("utf-16-be", "surrogatepass").decode(
         "utf-16-be", "surrogatepass"
     )
 
 
 @given(TEXTS)
 def test_a_string_of_cpp_has_plain_characters_only(text: str) -> None:
-    written = code_filters.write_cpp_string(text)
+    written = template_filters.write_cpp_string(text)
     assert re.fullmatch(r'"(?:[ !#-\>@-\[\]-~]|\\["\\?nt]|\\[0-3][0-7]{2})*"', written)
 
 
@@ -198,4 +198,4 @@ def test_a_string_of_cpp_has_plain_characters_only(text: str) -> None:
     ],
 )
 def test_filters_by_name(name: str, value: object, written: str) -> None:
-    assert code_filters.CODE_FILTERS[name](value) == written
+    assert template_filters.CODE_FILTERS[name](value) == written

@@ -9,7 +9,7 @@ from markdown_it import MarkdownIt
 
 from archgen.emit import text
 from archgen.emit.backend_manifests import read_shipped_backend
-from archgen.emit.markdown.inert_text import escape_markdown, make_code_span
+from archgen.emit.markdown.comment_sentences import escape_markdown, make_code_span
 from archgen.emit.markdown.mermaid_chart import escape_mermaid, fold_for_mermaid
 from archgen.emit.safe_names import make_identifier
 from archgen.emit.text.template_filters import (

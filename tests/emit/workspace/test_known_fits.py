@@ -9,10 +9,9 @@ import pytest
 
 from archgen.emit.workspace import workspace_plan
 from archgen.emit.workspace.disk_files import DiskReader, GeneratedFile
-from archgen.emit.workspace.known_fits import KnownFits, digest_fit
 from archgen.emit.workspace.own_code import judge_own_code
 from archgen.emit.workspace.run_record import read_run_record
-from archgen.emit.workspace.workspace_plan import UserChoices, plan_workspace
+from archgen.emit.workspace.workspace_plan import KnownFits, UserChoices, digest_fit, plan_workspace
 from archgen.emit.workspace.workspace_writing import carry_out, lock_workspace
 
 OWN = GeneratedFile("own.py", b"class Own:\n    def a(self, m): pass\n", once=True, expected_words=("a=x.a:p/msg/A",))

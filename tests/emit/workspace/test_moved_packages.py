@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from archgen.emit.workspace.disk_files import GeneratedFile
-from archgen.emit.workspace.moved_packages import find_moved_packages
+from archgen.emit.workspace.workspace_plan import find_moved_packages
 from archgen.products.own_code_patch import rename_likely
 
 WANTED = {

@@ -18,8 +18,8 @@ from archgen.plugins.middlewares.middleware_names import (
     name_space,
     shorten_wire_name,
 )
+from archgen.plugins.middlewares.middleware_types import record_interface
 from archgen.plugins.middlewares.middleware_view import make_view
-from archgen.plugins.middlewares.player_interfaces import record_interface
 from archgen.views.generation.generation_context import GenerationContext
 from tests.plugins.middlewares.middleware_projects import HEADLAMP, write_project
 

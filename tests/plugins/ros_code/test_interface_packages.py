@@ -11,8 +11,12 @@ import pytest
 from archgen.findings.rule_pages import read_rule_page
 from archgen.model.known_interfaces import Interface, InterfaceConstant, InterfaceField
 from archgen.pipeline import check_project
-from archgen.plugins.ros_code.interface_files import list_missing_words, list_used_packages, record_definition
-from archgen.plugins.ros_code.interface_packages import make_view
+from archgen.plugins.ros_code.interface_packages import (
+    list_missing_words,
+    list_used_packages,
+    make_view,
+    record_definition,
+)
 from archgen.plugins.ros_code.package_facts import record_package_facts
 from archgen.views.generation.architecture_needs import GENERATION_RULES, find_unmet_needs
 from archgen.views.generation.generation_context import GeneratedView, GenerationContext

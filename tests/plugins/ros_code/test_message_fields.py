@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from archgen.plugins.ros_code.message_fields import list_message_fields
+from archgen.plugins.ros_code.node_programs import list_message_fields
 from tests.plugins.ros_code.test_ros2_cpp import write_project
 from tests.running import archgen_here
 

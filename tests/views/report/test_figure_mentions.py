@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from archgen.views.report.figure_mentions import mention_section
+from archgen.views.report.printed_report import mention_section
 from archgen.views.shapes import Block, Column, Figure, Paragraph, Section, Table
 
 

@@ -277,8 +277,7 @@ def fold_steps(
         steps = steps[1:-1]
     system = steps[0].enters
     if system is None:
-        msg = "a way begins where it enters the launch"
-        raise ValueError(msg)
+        raise ValueError("a way begins where it enters the launch")
     return system, _Folding(steps, flow_names).fold(1)[0]
 
 

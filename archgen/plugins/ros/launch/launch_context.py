@@ -28,8 +28,8 @@ from archgen.plugins.ros.launch.launch_values import (
     name_object,
     write_plain,
 )
-from archgen.plugins.ros.launch.python_operators import calculate_number, compare_values, is_open
 from archgen.plugins.ros.launch.python_parsing import parse_expression
+from archgen.plugins.ros.launch.python_values import calculate_number, compare_values, is_open
 
 PlainResult = bool | str | int | float | list[Any] | None
 ArgumentLookup = Callable[[str], str | None]

@@ -22,11 +22,10 @@ from archgen.plugins.ros.launch.entity_actions import Ros1EntityReader, Ros2Enti
 from archgen.plugins.ros.launch.launch_actions import LaunchAction, LaunchedNode
 from archgen.plugins.ros.launch.launch_entities import read_xml_entities, read_yaml_entities
 from archgen.plugins.ros.launch.launch_files import LaunchFiles
-from archgen.plugins.ros.launch.launch_run import LaunchRun
+from archgen.plugins.ros.launch.launch_run import LaunchRun, give_server_parameters
 from archgen.plugins.ros.launch.launch_slices import SliceMaker
 from archgen.plugins.ros.launch.python_launch import read_python_launch
 from archgen.plugins.ros.launch.python_parsing import decode_text
-from archgen.plugins.ros.launch.server_parameters import give_server_parameters
 
 _ENDINGS = (".launch.py", ".launch.xml", ".launch.yaml", ".launch.yml", ".launch", ".py", ".xml", ".yaml", ".yml")
 

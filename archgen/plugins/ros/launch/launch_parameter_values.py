@@ -27,7 +27,6 @@ from archgen.plugin.importing import (
 )
 from archgen.plugin.model import is_parameter_name, read_scheduling
 from archgen.plugin.ros import ParameterText, matches_node_name, read_parameter_text
-from archgen.plugins.ros.launch.command_words import split_words
 from archgen.plugins.ros.launch.launch_actions import LaunchCondition, LaunchedNode, join_names
 from archgen.plugins.ros.launch.launch_context import LaunchContext
 from archgen.plugins.ros.launch.launch_values import (
@@ -38,6 +37,7 @@ from archgen.plugins.ros.launch.launch_values import (
     describe_launch_value,
     name_object,
 )
+from archgen.plugins.ros.launch.substitution_texts import split_words
 
 _MAX_DEPTH = 20
 _STEPS_OF_A_VALUE = 3

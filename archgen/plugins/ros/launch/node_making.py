@@ -8,7 +8,6 @@ from pathlib import Path
 from typing import Any
 
 from archgen.plugin.importing import STEPS_OF_A_KEPT_VALUE, find_program_name
-from archgen.plugins.ros.launch.command_words import split_words
 from archgen.plugins.ros.launch.launch_actions import LaunchAction, LaunchedNode, join_names
 from archgen.plugins.ros.launch.launch_parameter_values import (
     FILE_KIND,
@@ -31,7 +30,7 @@ from archgen.plugins.ros.launch.launch_values import (
     describe_launch_value,
 )
 from archgen.plugins.ros.launch.scope_run import ScopeRun
-from archgen.plugins.ros.launch.substitution_texts import fill_in_values
+from archgen.plugins.ros.launch.substitution_texts import fill_in_values, split_words
 
 _VARIABLE = re.compile(r"[A-Za-z_][A-Za-z0-9_]*\Z")
 

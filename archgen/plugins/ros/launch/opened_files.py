@@ -256,7 +256,6 @@ class _MoveItReader:
         return {f"{self._builder.prefix}_semantic": self._make_command(place, mappings, "its SRDF")}
 
     def _read_trajectory_execution(self, arguments: CallArguments) -> dict[LaunchValue, LaunchValue]:
-        """Return the controllers."""
         manages = arguments.get(1, "moveit_manage_controllers")
         found: dict[LaunchValue, LaunchValue] = {"moveit_manage_controllers": True if manages is None else manages}
         path = arguments.get(0, "file_path")
@@ -267,7 +266,6 @@ class _MoveItReader:
         return found | self._read_mapping(path, "moveit_simple_controller_manager")
 
     def _read_planning_scene_monitor(self, arguments: CallArguments) -> dict[LaunchValue, LaunchValue]:
-        """Return what is published of the planning scene."""
         given = {name: arguments.get(number, name) for number, name in enumerate(_MONITOR_NAMES)}
         return {**_MONITOR_DEFAULTS, **{name: value for name, value in given.items() if value is not None}}
 
@@ -281,7 +279,6 @@ class _MoveItReader:
         return dict(values) if isinstance(values, Mapping) and isinstance(sensors, list) and any(sensors) else {}
 
     def _read_moveit_cpp(self, arguments: CallArguments) -> dict[LaunchValue, LaunchValue]:
-        """Return the parameters of MoveItCpp."""
         return self._read_mapping(arguments.get(0, "file_path") or "config/moveit_cpp.yaml", "moveit_cpp")
 
     def _read_planning_pipelines(self, arguments: CallArguments) -> dict[LaunchValue, LaunchValue]:

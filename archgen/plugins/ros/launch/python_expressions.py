@@ -13,7 +13,6 @@ from archgen.plugin.importing import CHARACTERS_IN_A_STEP, Span
 from archgen.plugins.ros.launch.launch_actions import LaunchAction
 from archgen.plugins.ros.launch.launch_context import LaunchContext
 from archgen.plugins.ros.launch.launch_values import LaunchValue, Substitution, UnknownValue, copy_value, join_values
-from archgen.plugins.ros.launch.python_operators import combine_values, compare_values, is_open
 from archgen.plugins.ros.launch.python_values import (
     BoundMethod,
     CallArguments,
@@ -22,6 +21,9 @@ from archgen.plugins.ros.launch.python_values import (
     ModuleValue,
     NameScope,
     RecordValue,
+    combine_values,
+    compare_values,
+    is_open,
 )
 
 if TYPE_CHECKING:

@@ -286,8 +286,7 @@ def read_python_launch(path: Path, data: bytes, run: LaunchRun) -> list[LaunchAc
     reader.run_block(tree.body, scope)
     is_known, function = scope.find(_ENTRY)
     if not is_known or not isinstance(function, FunctionValue):
-        words = f"it has no function `{_ENTRY}`"
-        raise ForeignFileError(words, Span.of_file(reader.file), "give a launch file")
+        raise ForeignFileError(f"it has no function `{_ENTRY}`", Span.of_file(reader.file), "give a launch file")
     holder = LaunchAction("description", "LaunchDescription", reader.place(function.definition))
     result = reader.call_function(function, CallArguments([], {}), function.definition)
     if isinstance(result, LaunchAction):

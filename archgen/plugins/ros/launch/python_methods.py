@@ -15,9 +15,8 @@ from archgen.plugins.ros.launch.launch_values import (
     UnknownValue,
     join_values,
 )
-from archgen.plugins.ros.launch.python_operators import fill_text
 from archgen.plugins.ros.launch.python_statements import StatementReader
-from archgen.plugins.ros.launch.python_values import BoundMethod, CallArguments
+from archgen.plugins.ros.launch.python_values import BoundMethod, CallArguments, fill_text
 
 _TEXT_METHODS = frozenset(
     {"lower", "upper", "strip", "lstrip", "rstrip", "replace", "split", "startswith", "endswith", "title"}

@@ -31,8 +31,7 @@ class PythonRefusedError(Exception):
 def parse_python(text: str) -> ast.Module:
     """Return the syntax tree of a module. Raise PythonRefusedError."""
     if len(text) > MAX_CHARACTERS:
-        msg = f"it has more than {MAX_CHARACTERS:,} characters, which no launch file has"
-        raise PythonRefusedError(msg)
+        raise PythonRefusedError(f"it has more than {MAX_CHARACTERS:,} characters, which no launch file has")
     try:
         tree = _parse_quietly(text, "exec")
     except PythonRefusedError as refusal:
@@ -106,8 +105,7 @@ def _parse_quietly(text: str, mode: Literal["exec", "eval"]) -> ast.AST:
         words = error.msg.removesuffix(".") if error.msg else "it is no Python"
         raise PythonRefusedError(words, error.lineno or 1, max(error.offset or 1, 1)) from None
     except (RecursionError, MemoryError):
-        msg = "its expressions nest deeper than Python reads"
-        raise PythonRefusedError(msg) from None
+        raise PythonRefusedError("its expressions nest deeper than Python reads") from None
     except ValueError as error:
         # Null bytes, before Python 3.11.4: the same words as a SyntaxError has later.
         raise PythonRefusedError(str(error)) from None
@@ -119,8 +117,7 @@ def decode_text(file: str, data: bytes) -> str:
         return data.decode("utf-8-sig")
     except UnicodeDecodeError as error:
         line = data.count(b"\n", 0, error.start) + 1
-        words = "it is no UTF-8"
-        raise ForeignFileError(words, Span(file, line, 1, line, 2), "save it as UTF-8") from None
+        raise ForeignFileError("it is no UTF-8", Span(file, line, 1, line, 2), "save it as UTF-8") from None
 
 
 def parse_launch_module(file: str, data: bytes) -> tuple[str, ast.Module]:

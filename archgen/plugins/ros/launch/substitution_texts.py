@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 
-from archgen.plugins.ros.launch.launch_values import LaunchValue, Substitution, UnknownValue, join_values
+from archgen.plugins.ros.launch.launch_values import OPEN, LaunchValue, Substitution, UnknownValue, join_values
 
 _MAX_DEPTH = 20
 _KINDS = {
@@ -152,3 +152,32 @@ def _split_words(text: str) -> list[str]:
 def _strip_quotes(text: str) -> str:
     is_quoted = len(text) > 1 and text[0] == text[-1] and text[0] in "'\""
     return text[1:-1] if is_quoted and text[0] not in _ESCAPE.sub("", text[1:-1]) else text
+
+
+def split_words(text: str) -> list[str]:
+    """Return the words of a command line; quotes and backslashes keep blanks together."""
+    words: list[str] = []
+    word: list[str] = []
+    is_word, quote, position = False, "", 0
+    while position < len(text):
+        character = text[position]
+        if quote != "'" and text.startswith(OPEN, position) and (end := text.find(")", position)) > 0:
+            word.append(text[position : end + 1])
+            is_word, position = True, end
+        elif character == "\\" and quote != "'" and position + 1 < len(text):
+            position += 1
+            keeps_backslash = quote == '"' and text[position] not in '"\\$`'
+            word.append(f"\\{text[position]}" if keeps_backslash else text[position])
+            is_word = True
+        elif character == quote:
+            quote = ""
+        elif character in "'\"" and not quote:
+            quote, is_word = character, True
+        elif character.isspace() and not quote:
+            words += ["".join(word)] if is_word else []
+            word, is_word = [], False
+        else:
+            word.append(character)
+            is_word = True
+        position += 1
+    return [*words, "".join(word)] if is_word else words

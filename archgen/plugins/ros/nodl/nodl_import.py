@@ -64,8 +64,7 @@ def _parse_document(file: Path, data: bytes) -> MappingNode:
     try:
         text = data.decode("utf-8-sig")
     except UnicodeDecodeError:
-        words = "it is no text in UTF-8"
-        raise ForeignFileError(words, Span.of_file(str(file)), "save it in UTF-8") from None
+        raise ForeignFileError("it is no text in UTF-8", Span.of_file(str(file)), "save it in UTF-8") from None
     document, problems = parse_yaml(str(file), text)
     root = document.root if document else None
     if problems or not isinstance(root, MappingNode):
@@ -75,8 +74,7 @@ def _parse_document(file: Path, data: bytes) -> MappingNode:
     version = root.get("nodl_version")
     if not isinstance(version, ScalarNode) or version.text != "2":
         span = version.span if version else Span.of_file(str(file))
-        words = "it has no `nodl_version: 2`"
-        raise ForeignFileError(words, span, "is it a file of NoDL?")
+        raise ForeignFileError("it has no `nodl_version: 2`", span, "is it a file of NoDL?")
     return root
 
 

@@ -51,8 +51,7 @@ def read_dump_lines(files: Sequence[Path]) -> Iterator[DumpLine]:
     for path in files:
         data = read_bounded(path, MAX_DUMP_BYTES)
         if b"\0" in data:
-            words = "it is no text"
-            raise ForeignFileError(words, Span.of_file(path.name), "give what the commands print, as text")
+            raise ForeignFileError("it is no text", Span.of_file(path.name), "give what the commands print, as text")
         command, command_line = "", 0
         for number, raw_line in enumerate(_split_lines(data.decode("utf-8", "replace")), 1):
             line = _COLOURS.sub("", raw_line[:_MAX_LINE]).rstrip()

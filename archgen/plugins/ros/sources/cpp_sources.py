@@ -175,8 +175,7 @@ class _Reader:
         for child in node.named_children:
             if child.type == "field_initializer_list":
                 statements += self._read_initializers(child, depth)
-        body = node.child_by_field_name("body")
-        statements += self._read_block(body, depth) if body is not None else ()
+        statements += self._read_block(node.child_by_field_name("body"), depth)
         function = Function(
             name,
             parameters,
@@ -216,8 +215,8 @@ class _Reader:
                 made = self._make(child, "call", None, (self._make(name, "name", clean_type(_text(name))), *arguments))
                 yield Statement("local", made)
 
-    def _read_block(self, node: Node, depth: int) -> tuple[Statement, ...]:
-        if depth > MAX_DEPTH:
+    def _read_block(self, node: Node | None, depth: int) -> tuple[Statement, ...]:
+        if node is None or depth > MAX_DEPTH:
             return ()
         children = node.named_children if node.type in {"compound_statement", "case_statement"} else [node]
         return tuple(each for child in children for each in self._read_statement(child, depth + 1))
@@ -238,17 +237,10 @@ class _Reader:
                 if child.type in {"declaration", "init_statement"}
                 for each in self._read_declaration(child, depth)
             ]
-            body, other = (node.child_by_field_name(name) for name in ("consequence", "alternative"))
-            return [
-                *initial,
-                Statement(
-                    "branch",
-                    self._read(condition, depth) if condition is not None else None,
-                    (),
-                    self._read_block(body, depth) if body is not None else (),
-                    self._read_block(other, depth) if other is not None else (),
-                ),
-            ]
+            asked = self._read(condition, depth) if condition is not None else None
+            consequence = self._read_block(node.child_by_field_name("consequence"), depth)
+            alternative = self._read_block(node.child_by_field_name("alternative"), depth)
+            return [*initial, Statement("branch", asked, (), consequence, alternative)]
         if kind == "for_range_loop":
             right, body = node.child_by_field_name("right"), node.child_by_field_name("body")
             name = _find_name(node.child_by_field_name("declarator"))
@@ -257,12 +249,11 @@ class _Reader:
             target = self._make(node, "name", name)
             return [Statement("loop", self._read(right, depth), (target,), self._read_block(body, depth))]
         if kind in {"for_statement", "while_statement", "do_statement", "switch_statement"}:
-            body = node.child_by_field_name("body")
             start = node.child_by_field_name("initializer")
             unknown = self._make(node, "unknown")
             counter = _find_name(start.child_by_field_name("declarator")) if start is not None else ""
             before = [Statement("set", unknown, (self._make(node, "name", counter),))] if counter else []
-            inner = self._read_block(body, depth) if body is not None else ()
+            inner = self._read_block(node.child_by_field_name("body"), depth)
             return [*before, Statement("branch", unknown, body=inner)]
         if kind == "try_statement":
             tried, *handlers = (
@@ -374,11 +365,11 @@ class _Reader:
             return self._make(node, "list", None, [self._read(each, depth) for each in node.named_children])
         if kind == "lambda_expression":
             made = self._make(node, "lambda")
-            declarator, body = node.child_by_field_name("declarator"), node.child_by_field_name("body")
+            declarator = node.child_by_field_name("declarator")
             parameters = (
                 self._read_parameters(declarator.child_by_field_name("parameters"), depth) if declarator else ()
             )
-            statements = self._read_block(body, depth) if body is not None else ()
+            statements = self._read_block(node.child_by_field_name("body"), depth)
             made.body = Function("lambda", parameters, statements, self._file)
             return made
         if kind == "conditional_expression":
@@ -446,12 +437,8 @@ def _find_function(node: Node | None) -> Node | None:
     for _ in range(MAX_DEPTH):
         if node is None or node.type == "function_declarator":
             return node
-        inner = node.child_by_field_name("declarator")
-        node = (
-            inner
-            if inner is not None
-            else next((c for c in node.named_children if c.type.endswith("_declarator")), None)
-        )
+        others = (each for each in node.named_children if each.type.endswith("_declarator"))
+        node = node.child_by_field_name("declarator") or next(others, None)
     return None
 
 

@@ -8,11 +8,11 @@ from typing import Any
 
 from archgen.plugin.importing import MappingNode, load_shipped_component_types, node_to_data
 from archgen.plugin.ros import expand_name
-from archgen.plugins.ros.launch.command_words import split_words
 from archgen.plugins.ros.launch.launch_actions import LaunchedNode, join_names
 from archgen.plugins.ros.launch.launch_parameter_values import read_ros_arguments
 from archgen.plugins.ros.launch.launch_run import LaunchRun
 from archgen.plugins.ros.launch.launch_values import OPEN
+from archgen.plugins.ros.launch.substitution_texts import split_words
 from archgen.plugins.ros.workspace.program_reading import flatten_parameters
 
 _MANAGER = "controller_manager"

@@ -243,12 +243,10 @@ def join_workspace(
     account = ImportAccount()
     for path in files:
         if not path.is_dir():
-            words = "it is no folder"
-            raise ForeignFileError(words, Span.of_file(str(path)), _FOLDER_HELP)
+            raise ForeignFileError("it is no folder", Span.of_file(str(path)), _FOLDER_HELP)
     workspace = WorkspaceFiles(files, account)
     if not workspace.packages:
-        words = "there is no package.xml in it"
-        raise ForeignFileError(words, Span.of_file(str(files[0])), _FOLDER_HELP)
+        raise ForeignFileError("there is no package.xml in it", Span.of_file(str(files[0])), _FOLDER_HELP)
     is_without_launch = tuple(launch_files) == (_NO_LAUNCH,)
     if is_without_launch:
         launched = _start_programs(workspace, files)

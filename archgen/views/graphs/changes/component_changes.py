@@ -16,10 +16,11 @@ from archgen.views.changes.change_wording import BREAK_SIGN, CHANGE_SIGNS
 from archgen.views.changes.named_elements import name_each, name_partners
 from archgen.views.elements import element_names
 from archgen.views.graphs import element_boxes
-from archgen.views.graphs.changes.change_arrows import ConnectionLine, bundle_arrows
 from archgen.views.graphs.changes.merged_versions import (
     ChangeNotes,
+    ConnectionLine,
     MergedEdge,
+    bundle_arrows,
     collect_change_notes,
     describe_changed_flows,
     merged_edges,
@@ -152,7 +153,6 @@ def _component_exists(overlay: _OverlaidComponents, name: str) -> bool:
 
 
 def _old_component_id(overlay: _OverlaidComponents, name: str) -> str | None:
-    """Return the old id of a component, None if it is new."""
     old_id = overlay.comparison.matched_ids.old_ids.get("component", {}).get(name, name)
     return old_id if old_id in overlay.old_lookup.architecture.components else None
 

@@ -7,7 +7,7 @@ from textwrap import dedent
 
 import pytest
 
-from archgen.products import workspace_changes
+from archgen.products import reviewed_change
 from tests.cli.conftest import Run
 from tests.plugins.ros.workspace.test_workspace_import import WORKSPACE, write_workspace
 from tests.repositories import commit, git, repository
@@ -93,7 +93,7 @@ def test_what_a_branch_puts_in_the_place_of_a_workspace_is_not_read(robot: Path,
 
 
 def test_a_workspace_that_is_too_large_is_said(robot: Path, run: Run, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(workspace_changes, "_MAX_FILES", 3)
+    monkeypatch.setattr(reviewed_change, "_MAX_FILES", 3)
     commit(robot, {"README.md": "y"})
     assert "warning: ../src is not held against the model: src: it holds more than 3 files, or 200 MB" in review(run)[1]
 

@@ -1,0 +1,90 @@
+"""The chapter of requirements in the deliverable: who serves each, and what proves it."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+
+from archgen.diagnostics import join_first
+from archgen.model.component import Component
+from archgen.model.requirement import Requirement
+from archgen.views import inline_text, requirement_servers
+from archgen.views.lookup import Lookup
+from archgen.views.shapes import Inlines, Paragraph, Section, Table, Text, drop_empty_columns, make_columns
+from archgen.views.tables import requirement_tables
+from archgen.views.timing import chain_status, timing_tables
+
+_MAX_REQUIREMENTS = 100
+"""Of more requirements those are listed that are not met."""
+_STATE_RANKS = {"uncovered": 0, "missed": 1, "not proven": 2, "open": 3, "met": 4}
+
+
+def make_requirements(lookup: Lookup) -> Iterator[Section]:
+    """Yield the chapter of requirements with what proves each, first what nobody serves."""
+    requirements = requirement_tables.shown_requirements(lookup)
+    if not requirements:
+        return
+    # Of those that are met, what a chain proves comes before what a trial has to show.
+    ranked = sorted(
+        requirements,
+        key=lambda each: (
+            _STATE_RANKS[_judge(lookup, each)],
+            each.id not in lookup.chains_for_requirement and not each.verified_by,
+        ),
+    )
+    shown = ranked if len(ranked) <= _MAX_REQUIREMENTS else [each for each in ranked if _judge(lookup, each) != "met"]
+    shown = shown[:_MAX_REQUIREMENTS]
+    served = [each for each in requirements if requirement_servers.is_served(lookup, each)]
+    lead = f"{len(served)} of {len(requirements)} are served. Those that nobody serves stand first, then those without proof."
+    if len(shown) < len(ranked):
+        lead += f" The other {len(ranked) - len(shown)} stand in the workbook."
+    rows = tuple(_trace_requirement(lookup, each) for each in shown)
+    columns = make_columns(
+        ("Id", 0.5), ("Requirement", 2.6), ("By, components", 1.4), ("Use cases", 0.9), ("Proof", 1.7)
+    )
+    table = Table("table:requirements", "Requirements", columns, rows, numbered=False, dense=True)
+    blocks = (Paragraph(inline_text.to_inlines(lead)), drop_empty_columns(table))
+    yield Section("page:requirements", "Requirements, and what proves them", blocks, page_break=True)
+
+
+def _judge(lookup: Lookup, requirement: Requirement) -> str:
+    """Return the state of a requirement; of one that only a trial can show, that it is open."""
+    state = lookup.requirement_trace.judge(requirement.id)
+    chains = lookup.chains_for_requirement.get(requirement.id, ())
+    verdicts = [requirement_servers.describe_chain_state(lookup, each) for each in chains]
+    return "not proven" if state == "open" and "not proven" in verdicts else state
+
+
+def _trace_requirement(lookup: Lookup, requirement: Requirement) -> tuple[Inlines, ...]:
+    servers = list(lookup.components_for_requirement.get(requirement.id, ()))
+    owners = dict.fromkeys(owner for component in servers for owner in component.owners)
+    by = (
+        (*inline_text.owner_links(lookup.architecture, owners), Text(f" {len(servers)}", muted=True)) if servers else ()
+    )
+    return (
+        inline_text.to_inlines(Text(requirement.id, strong=True)),
+        inline_text.to_inlines(requirement.title),
+        by,
+        inline_text.join_inlines(requirement_tables.use_case_link(lookup, name) for name in requirement.use_cases),
+        _prove(lookup, requirement, servers),
+    )
+
+
+def _prove(lookup: Lookup, requirement: Requirement, servers: Sequence[Component]) -> Inlines:
+    """Return what proves a requirement: the verdict of a chain, what verifies it, else the figures of a trial."""
+    if not requirement_servers.is_served(lookup, requirement):
+        return (Text("nobody serves it", status="uncovered"),)
+    results = {result.id: result for result in (lookup.timing.chains if lookup.timing else ())}
+    lines: list[Inlines] = []
+    for chain in lookup.chains_for_requirement.get(requirement.id, ()):
+        if result := results.get(chain.id):
+            figures = (
+                *timing_tables.duration_cell(result.bound),
+                Text(" of "),
+                *timing_tables.deadline_cell(result),
+            )
+            lines.append((*chain_status.verdict_chip(result), Text(" "), *(figures if result.deadline else ())))
+    lines += requirement_servers.list_verifiers(lookup, requirement)
+    if not lines:
+        told = [each.accuracy for component in servers for each in component.performance if each.accuracy]
+        lines = [inline_text.to_inlines(Text(f"to be tried: {join_first(told, 1)}", muted=True))] if told else []
+    return inline_text.join_lines(lines) or (Text(_judge(lookup, requirement), muted=True),)
