@@ -16,6 +16,7 @@ from archgen.timing.chains.chain_verdicts import find_lateness
 from archgen.timing.chains.missing_figures import (
     describe_overload,
     describe_unfound_places,
+    find_overloaded_elements,
     find_overloaded_places,
     find_saturated_links,
     find_unfound_places,
@@ -170,6 +171,10 @@ def _suggest_for_cause(analysis: Analysis, result: ChainResult) -> str:
         unit = " of a core" if place in analysis.hosts else ""
         needed = [f"{name} ({figure_wording.format_share(share)}{unit})" for share, name in shares[:_NAMED_LOADS]]
         return f"Take work off {place}, where {join_words(needed)} need{'s' if len(needed) == 1 else ''} most."
+    for name, share in find_overloaded_elements(analysis, result.terms).items():
+        return (
+            f"Let {name} work less often, or make it quicker: it takes {figure_wording.format_share(share)} of a core."
+        )
     links = find_saturated_links(result.terms)
     if links:
         topic = max(analysis.links[links[0]].topic_traffic, key=lambda pair: pair[1].value or 0)[0]

@@ -6,6 +6,7 @@ Where the search found no bound: on which host, at which load, and what was anal
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
+from fractions import Fraction
 
 from archgen.diagnostics.common_wording import join_first, join_words
 from archgen.frozen import dataclass
@@ -23,6 +24,7 @@ from archgen.timing.figures.timing_values import (
     is_boundless,
     is_unfound,
 )
+from archgen.timing.load.host_loads import activity_share
 from archgen.timing.system.core_placement import is_missing_cores
 from archgen.timing.system.timing_system import TimingSystem
 
@@ -128,12 +130,28 @@ def find_saturated_links(terms: Iterable[ChainTerm]) -> tuple[str, ...]:
     return tuple(note.removeprefix(f"{SATURATED_NOTE}: ") for note in notes if note.startswith(SATURATED_NOTE))
 
 
+def find_overloaded_elements(analysis: Analysis, terms: Iterable[ChainTerm]) -> dict[str, Fraction]:
+    """Return the elements of a chain that are fired again before they are done, with the share of a core that each takes.
+
+    What runs where more is to be done than can be is left out: the host is told.
+    """
+    term_list = tuple(terms)
+    places = find_overloaded_places(analysis, term_list)
+    shares: dict[str, Fraction] = {}
+    for name in (term.activity for term in term_list if is_boundless(term.response)):
+        share = activity_share(analysis.system, name, analysis.paces[name]).value
+        if share is not None and share >= 1 and analysis.system.activities[name].host not in places:
+            shares[name] = share
+    return shares
+
+
 def describe_overload(analysis: Analysis, terms: Iterable[ChainTerm], quote: str = "") -> str:
     """Say what of a chain has more to do or to carry than it can: `more is to be done on pc than can be`; empty for nothing."""
     term_list = tuple(terms)
     places = (
         ("done on", tuple(find_overloaded_places(analysis, term_list))),
         ("sent over", find_saturated_links(term_list)),
+        ("done by", tuple(find_overloaded_elements(analysis, term_list))),
     )
     phrases = [f"{verb} {join_words([f'{quote}{name}{quote}' for name in names])}" for verb, names in places if names]
     return f"more is to be {join_words(phrases)} than can be" if phrases else ""
@@ -146,6 +164,7 @@ _HOST_SEPARATOR = " - "
 def describe_gaps(result: ChainResult, analysis: Analysis) -> str:
     """Return what a chain's bound lacks: `no bound: execution time of x, y unknown`; empty where it lacks nothing."""
     overloaded = [*find_overloaded_places(analysis, result.terms), *find_saturated_links(result.terms)]
+    overloaded += find_overloaded_elements(analysis, result.terms)
     if overloaded:
         return f"{join_words(overloaded)} {'is' if len(overloaded) == 1 else 'are'} overloaded"
     if result.bound.complete:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from fractions import Fraction
+
 import pytest
 
 from archgen.timing.chains.chain_bounds import bound_all_chains
@@ -9,6 +11,7 @@ from archgen.timing.chains.missing_figures import (
     describe_gaps,
     describe_overload,
     describe_unfound_places,
+    find_overloaded_elements,
     find_overloaded_places,
     find_saturated_links,
     find_unfound_places,
@@ -85,3 +88,12 @@ def test_an_overloaded_resource_is_named() -> None:
     (chain,) = bound_all_chains(analysis, model).values()
     assert [name for name, _ in find_overloaded_places(analysis, chain.terms)["gpu"]] == ["a", "b"]
     assert describe_overload(analysis, chain.terms, "`") == "more is to be done on `gpu` than can be"
+
+
+def test_an_element_that_is_fired_before_it_is_done_is_named() -> None:
+    nodes = {"a @pc": "period: 10 ms, wcet: 1 ms", "b @pc": "wcet: 12 ms"}
+    model = read_sketch(nodes, "a>b", "hosts: {pc: {cores: 4}}\nchains: {way: {through: [a, b], deadline: 1 s}}")
+    analysis = analyse_architecture(model)
+    (chain,) = bound_all_chains(analysis, model).values()
+    assert find_overloaded_elements(analysis, chain.terms) == {"b": Fraction(6, 5)}
+    assert describe_gaps(chain, analysis) == "b is overloaded"
