@@ -7,7 +7,8 @@ from collections import defaultdict
 from collections.abc import Collection, Iterable, Iterator, Mapping
 from graphlib import TopologicalSorter
 
-from archgen.plugin.findings import NO_SPAN, Diagnostic, Span
+from archgen.plugin import replace
+from archgen.plugin.findings import NO_SPAN, Diagnostic, Severity, Span
 from archgen.plugin.generating import (
     CPP_KEYWORDS,
     PYTHON_KEYWORDS,
@@ -60,13 +61,19 @@ def find_refused_messages(architecture: Architecture, ros: int) -> Collection[st
     return set(names) - set(_sort_out(architecture, names, definers, ros)[0])
 
 
-def list_unlisted_packages(architecture: Architecture, used_packages: Collection[str]) -> list[str]:
-    """Return those of some packages that the backend `ros_interfaces` makes where `generate` lists others, and not this one."""
+def tell_unlisted_packages(architecture: Architecture, used_packages: Collection[str]) -> Iterator[Diagnostic]:
+    """Say which packages that programs use `ros_interfaces` would make where `generate` lists other backends alone."""
     listed = architecture.generate.backends
     if not listed or "ros_interfaces" in listed:
-        return []
+        return
     made = {name.partition("/")[0] for name in _list_generated(architecture, _find_definers(architecture))}
-    return sorted(made & {*used_packages})
+    for package_name in sorted(made & {*used_packages}):
+        told = tell_left_out(
+            f"programs need the package `{package_name}`, which no backend makes that `generate` lists",
+            NO_SPAN,
+            help_line="write `ros_interfaces:` below `backends`, or `status: existing` at its types if others make it",
+        )
+        yield replace(told, severity=Severity.NOTE)
 
 
 def _list_generated(architecture: Architecture, definers: Mapping[str, ConceptualType]) -> list[str]:

@@ -8,7 +8,6 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
-from typing import Any
 
 from archgen.plugin import replace
 from archgen.plugin.findings import NO_SPAN, Diagnostic, Label, Severity, Span, first_written_span
@@ -45,7 +44,7 @@ from archgen.plugins.ros_code.cpp_programs import (
     find_bad_classes,
     list_cpp_libraries,
 )
-from archgen.plugins.ros_code.interface_packages import find_refused_messages, list_unlisted_packages
+from archgen.plugins.ros_code.interface_packages import find_refused_messages, tell_unlisted_packages
 from archgen.plugins.ros_code.package_facts import RosdepKeys, record_package_facts
 from archgen.plugins.ros_code.program_differences import find_program_differences, list_timers
 
@@ -114,7 +113,8 @@ def make_view(context: GenerationContext, ros: int = 2) -> GeneratedView:
             },
         )
         package["programs"].append(record)  # type: ignore[attr-defined]
-    findings += _tell_unlisted_interfaces(context, records)
+    used_packages = {name for each in records for name in each["message_packages"]}  # type: ignore[attr-defined]
+    findings += tell_unlisted_packages(context.architecture, used_packages)
     keys = RosdepKeys(context.architecture)
     findings += keys.findings
     for package in packages.values():
@@ -158,18 +158,6 @@ def _tell_nothing(context: GenerationContext, programs: Collection[object], lang
         message = f"no node is in {name}: all that are to be generated are in {other_name}"
         help_line = f"write `language: {language}` at nodes that are to be in {name}"
     yield replace(tell_left_out(message, NO_SPAN, help_line=help_line), severity=Severity.NOTE)
-
-
-def _tell_unlisted_interfaces(context: GenerationContext, records: Iterable[Mapping[str, Any]]) -> Iterator[Diagnostic]:
-    """Say which packages of messages the programs need that no backend makes which `generate` lists."""
-    used = {name for each in records for name in each["message_packages"]}
-    for package_name in list_unlisted_packages(context.architecture, used):
-        told = tell_left_out(
-            f"programs need the package `{package_name}`, which no backend makes that `generate` lists",
-            NO_SPAN,
-            help_line="write `ros_interfaces:` below `backends`, or `status: existing` at its types if others make it",
-        )
-        yield replace(told, severity=Severity.NOTE)
 
 
 def _name_module(program_name: str) -> str:
