@@ -133,8 +133,7 @@ def resolve_waypoint(architecture: Architecture, system: TimingSystem, word: str
     if len(matches) == 1:
         return Waypoint("component" if components else "output", matches[0])
     if matches:
-        msg = f"`{word}` may mean {join_first([f'`{name}`' for name in matches])}"
-        raise UnknownNameError(msg)
+        raise UnknownNameError(f"`{word}` may mean {join_first([f'`{name}`' for name in matches])}")
     known_names = [*system.activities, *architecture.nodes, *architecture.components, *architecture.outputs]
     raise UnknownNameError(unknown_name_text(word, known_names))
 

@@ -102,8 +102,7 @@ def _read_view_targets(entry: PluginEntry) -> Iterator[tuple[str, str]]:
 
 
 def _refuse_generator(entry: PluginEntry, problem: str) -> None:
-    msg = f"the generator `{entry.name}` of {entry.origin} cannot be used: {problem}"
-    raise PluginRefusedError(msg)
+    raise PluginRefusedError(f"the generator `{entry.name}` of {entry.origin} cannot be used: {problem}")
 
 
 def _make_foreign_view(entry: PluginEntry, name: str, target: str, context: GenerationContext) -> GeneratedView:
@@ -114,8 +113,7 @@ def _make_foreign_view(entry: PluginEntry, name: str, target: str, context: Gene
         msg = f"the view `{name}` of {entry.origin} fails: {type(error).__name__}: {error}"
         raise PluginRefusedError(msg) from error
     if not isinstance(view, GeneratedView):
-        msg = f"the view `{name}` of {entry.origin} fails: `{target}` returns no GeneratedView"
-        raise PluginRefusedError(msg)
+        raise PluginRefusedError(f"the view `{name}` of {entry.origin} fails: `{target}` returns no GeneratedView")
     return view
 
 

@@ -252,8 +252,7 @@ def join_workspace(
         launched = _start_programs(workspace, files)
     elif not launch_files and not LaunchFiles(files).list_launch_files():
         help_line = f"with `--launch {_NO_LAUNCH}` each program is taken as if something started it once"
-        msg = "there is no launch file in it"
-        raise ForeignFileError(msg, Span.of_file(str(files[0])), help_line)
+        raise ForeignFileError("there is no launch file in it", Span.of_file(str(files[0])), help_line)
     else:
         entries = [_find_entry(workspace, files, text) for text in launch_files]
         launched = run_launch_files([*entries, *files] if entries else files, arguments, environment)
