@@ -49,9 +49,9 @@ else
 endif
 
 # The rest comes after, not among them: what builds or takes long would push others over their time limits. `-rs` says what was
-# not tried here, such as a Python that is not installed.
+# not tried here, such as a Python that is not installed. One process more than cores: much of this is waiting for others.
 test-all: .make/test-all test .make/ros
-	$(BIN)/python -m pytest -m "slow or build or browser or office or compilers or judges or ros" -rs -n $(WORKERS) --dist worksteal $(TESTS)
+	$(BIN)/python -m pytest -m "slow or build or browser or office or compilers or judges or ros" -rs -n $(shell expr $(WORKERS) + 1) --dist worksteal $(TESTS)
 
 covered: .make/test
 	-$(BIN)/python -m pytest -q tests/test_modules_are_tested.py -k has_a_test --update-covered

@@ -187,7 +187,7 @@ FOLDERS = (
     "-o",
     ".hidden",
 )
-_SHOWN_SETTINGS = 4
+_SHOWN_SETTINGS = 2
 """So many settings have each locale, time zone, folder, mask and number of processors."""
 
 

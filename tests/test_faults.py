@@ -1,8 +1,8 @@
 """Whatever happens to a verb that writes, each file is old or new, it says so in words, and the next run does its work.
 
 The disk is full or read-only from some step on, or in the midst of a write; the process is killed; files change, vanish or
-become something else in the moment in which they are read; two runs write into one place. `make test` tries a few steps of
-each verb, drawn by its name, the slow tests more (`ARCHGEN_FAULT_STEPS=1000` tries each step).
+become something else in the moment in which they are read; two runs write into one place. `make test` tries a step of
+some verbs, drawn by their names, the slow tests one of each (`ARCHGEN_FAULT_STEPS=1000` tries each step).
 """
 
 from __future__ import annotations
@@ -130,7 +130,7 @@ QUICK = ("pack", "generate again", "new", "import --merge", "merge-driver")
 """Verbs of which `make test` tries some steps, too: they stand for all ways in which files are written."""
 
 
-STEPS = int(os.environ.get("ARCHGEN_FAULT_STEPS", "8" if DRAWS_ANEW else "2"))
+STEPS = int(os.environ.get("ARCHGEN_FAULT_STEPS", "8" if DRAWS_ANEW else "1"))
 """How many steps of each verb the slow tests try with each fault, and `make properties`."""
 
 

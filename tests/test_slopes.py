@@ -100,7 +100,7 @@ def make_projects(dimension: str, folder: Path) -> list[Path]:
 _DIMENSIONS = ("components", "variants", "partners", "chains", "requirements", "instances")
 
 
-@pytest.mark.parametrize("dimension", mark_slow_samples(_DIMENSIONS, 2))
+@pytest.mark.parametrize("dimension", mark_slow_samples(_DIMENSIONS, 1))
 def test_no_verb_calls_anything_more_than_n_log_n_times(dimension: str, tmp_path: Path) -> None:
     projects = make_projects(dimension, tmp_path)
     steep = []

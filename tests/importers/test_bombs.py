@@ -15,7 +15,7 @@ from tests.running import ROOT
 
 PROCESSOR_SECONDS = 60
 """Ten on a quiet machine; a slower one, other tests beside it and full caches make it several times more."""
-_SHARE = 3
+_SHARE = 4
 """`make test-all` tries one of so many that are not quick, `make properties` each."""
 ADDRESSES = 1_500_000_000
 RESIDENT_BYTES = 1_000_000_000

@@ -23,7 +23,7 @@ _SYSTEMS = 55 if DRAWS_ANEW else 30
 def test_no_simulation_exceeds_a_bound_where_two_features_meet(first: str, second: str, seed: int) -> None:
     text = random_pair_text((first, second), seed)
     with tempfile.TemporaryDirectory() as place:
-        wrong = [exceeded_by(model, seconds=1, seeds=3)[0] for model in read_variants(text, Path(place))]
+        wrong = [exceeded_by(model, seconds=1, seeds=2)[0] for model in read_variants(text, Path(place))]
     assert wrong == [[]] * len(wrong)
 
 

@@ -16,6 +16,7 @@ from archgen.edit.refactoring.judged_version import JudgedVersion, judge_edited,
 from archgen.edit.refactoring.kept_names import KeptNames
 from archgen.edit.refactoring.refactoring import Refactoring
 from archgen.project import load_project
+from tests.property_sizes import DRAWS_ANEW
 from tests.running import RAMCIP, ROOT
 
 PROJECT = """\
@@ -484,7 +485,7 @@ def test_random_renames_come_back(folder: Path) -> None:
 @pytest.mark.slow
 @pytest.mark.parametrize("folder", [*EXAMPLES, RAMCIP], ids=lambda folder: folder.name)
 def test_more_random_renames_come_back(folder: Path) -> None:
-    assert draw_renames(folder, 40, 11) == []
+    assert draw_renames(folder, 40 if DRAWS_ANEW else 16, 11) == []
 
 
 @pytest.mark.slow

@@ -14,7 +14,7 @@ from archgen.views import shapes
 from tests.browser_pages import OpenPage, judge_with_axe
 from tests.emit.site.conftest import drawn
 from tests.outside_tools import ask_nu_checker
-from tests.property_sizes import mark_further_samples
+from tests.property_sizes import mark_further_samples, mark_slow_samples
 
 if TYPE_CHECKING:
     from playwright.sync_api import Browser, Page, Route
@@ -121,8 +121,7 @@ def test_axe_finds_nothing(visit: OpenPage, width: int, scheme: str) -> None:
         assert judge_with_axe(visit(path, width, scheme)) == [], path
 
 
-@pytest.mark.slow
-@pytest.mark.parametrize(("width", "scheme"), [(1280, "dark"), (360, "light")])
+@pytest.mark.parametrize(("width", "scheme"), mark_slow_samples([(360, "light"), (1280, "dark")], 1))
 def test_the_case_study_in_chromium(visit: OpenPage, example: Path, width: int, scheme: str) -> None:
     for path in EXAMPLE:
         page = visit(path, width, scheme, example)

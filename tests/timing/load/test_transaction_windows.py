@@ -124,7 +124,7 @@ def hold_against_runs(seed: int, **kind: bool) -> tuple[list[str], int]:
     ], len(held)
 
 
-@pytest.mark.parametrize("first", mark_further_samples(range(0, 60, 4), 8))
+@pytest.mark.parametrize("first", mark_further_samples(range(0, 60, 4), 4))
 @pytest.mark.parametrize("kind", KINDS, ids=lambda kind: "-".join(kind) or "plain")
 def test_no_run_of_an_independent_simulator_exceeds_a_bound(kind: dict[str, bool], first: int) -> None:
     found = {seed: hold_against_runs(20_000 + seed, **kind) for seed in range(first, first + 4)}

@@ -67,7 +67,7 @@ def _prove_by_rate(seed: int) -> tuple[bool, bool] | None:
     return all(slack is not None and slack >= 0 for slack in slacks), not proposal.best.late
 
 
-@pytest.mark.parametrize("first_seed", mark_further_samples(range(0, 150, 15), 5))
+@pytest.mark.parametrize("first_seed", mark_further_samples(range(0, 150, 15), 3))
 def test_all_that_priorities_by_rate_prove_is_proven(first_seed: int) -> None:
     answers = [answer for seed in range(first_seed, first_seed + 15) if (answer := _prove_by_rate(seed)) is not None]
     assert all(is_proposed or not is_proven_by_rate for is_proven_by_rate, is_proposed in answers)
