@@ -35,3 +35,19 @@ def test_each_pair_is_in_the_systems_that_are_drawn_for_it() -> None:
             for model in read_variants(random_pair_text(pair, number), Path(place)):
                 held += exceeded_by(model, seconds=1, seeds=1)[1]
     assert held > 250
+
+
+@pytest.mark.parametrize(
+    ("pair", "seed"),
+    [
+        (("services", "dropped"), 153),  # a core given up before its turn had no storing wait
+        (
+            ("GPU", "variants"),
+            1253006,
+        ),  # who shares a callback group with a user of a GPU on another core waits for its use
+    ],
+)
+def test_what_once_failed_holds(pair: tuple[str, str], seed: int) -> None:
+    with tempfile.TemporaryDirectory() as place:
+        models = list(read_variants(random_pair_text(pair, seed), Path(place)))
+        assert [exceeded_by(model, seconds=1, seeds=3)[0] for model in models] == [[]] * len(models)

@@ -250,9 +250,7 @@ class _CodeReader:
             for each in ast.walk(function):
                 targets = [each.target] if isinstance(each, ast.AnnAssign) else getattr(each, "targets", ())
                 value = each.value if isinstance(each, ast.Assign | ast.AnnAssign) else None
-                traces = (
-                    set[_Trace | None]() if value is None or _is_none(value) else {self._trace_fields(value, roots)}
-                )
+                traces = () if value is None or _is_none(value) else (self._trace_fields(value, roots),)
                 for target in targets:
                     if isinstance(target, ast.Attribute):
                         unseen[target.attr] -= 1

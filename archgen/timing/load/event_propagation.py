@@ -100,6 +100,9 @@ class _Propagation(StepUpdates):
         """Find how long storing callbacks may wait, where the responses on a core were found without them."""
         state = self.state
         readers = {name for name, activity in state.system.activities.items() if samples_inputs(state.system, activity)}
+        for name in sorted(readers.difference(state.storing_waits)):
+            # Found below, but for a core on which activities fire one another and that was given up before its turn.
+            state.storing_waits[name] = WorstResponse(None, "host", DIVERGED_CAUSE)
         for step, resource in self.resources.items():
             names = [name for name in resource.members if name in readers]
             queue = self.queues.get(step)

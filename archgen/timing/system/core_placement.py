@@ -390,12 +390,13 @@ def _find_waiting_threads(system: TimingSystem, resource: ProcessingResource) ->
     waiting_pools = {
         crowded_pools[activity.id] for activity in all_members if activity.suspends and activity.id in crowded_pools
     }
+    waiting_lanes = {name_lane(system, activity) for activity in all_members if activity.suspends}
     crowds: dict[ThreadPool, list[ThreadUnit]] = {}
     for unit in resource.units:
         pool = crowded_pools.get(unit[0])
         if pool is not None and pool in waiting_pools:
             crowds.setdefault(pool, []).append(unit)
-        # Who computes in turn with others that wait is held up by them as if it waited itself.
-        elif find_serial_process(system, unit[0]) or any(system.activities[name].suspends for name in unit):
+        # Who computes in turn with others that wait, be it on another core, is held up by them as if it waited itself.
+        elif find_serial_process(system, unit[0]) or name_lane(system, system.activities[unit[0]]) in waiting_lanes:
             yield (unit,)
     yield from (tuple(units) for units in crowds.values())
