@@ -207,6 +207,7 @@ def test_the_packed_file_holds_the_texts_as_they_were(kind: str, project: Path, 
 
 
 @pytest.mark.slow
+@pytest.mark.hypothesis
 @pytest.mark.parametrize("kind", ["markup"], indirect=True)
 def test_no_script_runs_in_a_browser(project: Path) -> None:
     seen: list[str] = []

@@ -21,7 +21,7 @@ from tests.determined_project import make_every_output_once, make_project, run_e
 from tests.property_sizes import DRAWS_ANEW
 from tests.running import RAMCIP, REVISION, ROOT, contents, made_once
 
-pytestmark = pytest.mark.build
+pytestmark = [pytest.mark.build, pytest.mark.hypothesis]
 VERSIONS = ("3.11", "3.12", "3.13", "3.14")
 NEWEST = "newest"
 """The last of these versions that is found beside the one that runs the tests."""

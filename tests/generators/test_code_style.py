@@ -93,6 +93,7 @@ def _judge(settings: tuple[str, ...], folders: list[Path]) -> str:
 
 
 @pytest.mark.slow
+@pytest.mark.hypothesis
 def test_packages_of_ros_are_written_as_ament_wants_it(workspaces: Path) -> None:
     made = [each for backend in ROS_BACKENDS for each in workspaces.glob(f"*/{backend}") if any(each.rglob("*.py"))]
     assert len(made) > 2 * len(SEEDS)
@@ -100,6 +101,7 @@ def test_packages_of_ros_are_written_as_ament_wants_it(workspaces: Path) -> None
 
 
 @pytest.mark.slow
+@pytest.mark.hypothesis
 def test_simulations_are_written_as_python_is(workspaces: Path) -> None:
     ignored, *others = AMENT_FLAKE8
     found = _judge((f"{ignored},{NOT_OF_ROS}", *others), sorted(workspaces.glob("*/python_simulation")))

@@ -61,6 +61,7 @@ def _list_slow_bombs() -> list[Bomb]:
 
 
 @pytest.mark.slow
+@pytest.mark.hypothesis
 @pytest.mark.skipif(sys.platform != "linux", reason="limits of memory are those of Linux")
 @pytest.mark.parametrize(
     "bomb",

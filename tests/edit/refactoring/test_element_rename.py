@@ -483,6 +483,7 @@ def test_random_renames_come_back(folder: Path) -> None:
 
 
 @pytest.mark.slow
+@pytest.mark.hypothesis
 @pytest.mark.parametrize("folder", [*EXAMPLES, RAMCIP], ids=lambda folder: folder.name)
 def test_more_random_renames_come_back(folder: Path) -> None:
     assert draw_renames(folder, 40 if DRAWS_ANEW else 16, 11) == []
