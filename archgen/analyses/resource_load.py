@@ -9,11 +9,10 @@ from archgen.diagnostics import NO_SPAN, Diagnostic, Label, Severity
 from archgen.diagnostics.rule_options import RuleOption, format_percentage
 from archgen.model.architecture import Architecture
 from archgen.model.deployment import Link
-from archgen.timing.analysis import Analysis, HostLoad
+from archgen.timing.analysis import Analysis, HostLoad, LinkLoad
 from archgen.timing.figures.figure_wording import format_duration, format_number
 from archgen.timing.figures.timing_values import add_values
 from archgen.timing.load.host_loads import activity_share
-from archgen.timing.load.link_queueing import find_longest_sending
 from archgen.timing.system.thread_pools import find_unplaced_pools
 
 
@@ -148,7 +147,7 @@ def saturated_link(architecture: Architecture, analysis: Analysis, *, limit: Fra
     """What is sent over a link is more than its bandwidth carries, at all or within the latency that is written."""
     for name, load in analysis.links.items():
         if load.share.value is None or load.share.value < limit:
-            yield from _find_broken_latency(architecture.links[name], analysis)
+            yield from _find_broken_latency(architecture.links[name], load)
             continue
         topic = max(load.topic_traffic, key=lambda part: part[1].value or 0)[0]
         yield Diagnostic(
@@ -161,11 +160,10 @@ def saturated_link(architecture: Architecture, analysis: Analysis, *, limit: Fra
         )
 
 
-def _find_broken_latency(link: Link, analysis: Analysis) -> Iterator[Diagnostic]:
-    longest = find_longest_sending(analysis.system, link.id)
-    if longest is None or link.worst is None or longest[0] <= link.worst.value:
+def _find_broken_latency(link: Link, load: LinkLoad) -> Iterator[Diagnostic]:
+    if load.longest_sending is None or link.worst is None or load.longest_sending[0] <= link.worst.value:
         return
-    duration, topic = longest
+    duration, topic = load.longest_sending
     shown_duration, written = format_duration(duration), format_duration(link.worst.value)
     yield Diagnostic(
         "saturated-link",

@@ -24,20 +24,24 @@ _NS_PER_SECOND = 10**9
 def long_execution(architecture: Architecture, *, limit: Fraction) -> Iterator[Diagnostic]:
     """An execution takes longer, at worst, than the period in which it is to be done, or than the response that is declared."""
     yield from _find_above_period(architecture, ("wcet", "the worst case execution time"), "long-execution", limit)
-    for node in architecture.nodes.values():
-        # One `timing` may be that of several components.
-        for timing in {id(timing.places): timing for timing in node.timing.values()}.values():
-            if timing.response and timing.wcet and timing.response.value < timing.wcet.value:
-                yield Diagnostic(
-                    "long-execution",
-                    f"the response of `{node.id}` (`response`, {timing.response}) is below the execution time that it holds "
-                    f"(`wcet`, {timing.wcet}): what is declared is taken as it is",
-                    timing.places["response"],
-                    severity=Severity.WARNING,
-                    labels=(Label(timing.places["wcet"], "its execution time"),),
-                    help="write the response of the longest run, or leave it out: it is computed then",
-                    element=node.id,
-                )
+    # One `timing` may be that of several components, and of all instances of a type.
+    timings = {
+        timing.places["response"]: (node, timing)
+        for node in architecture.nodes.values()
+        for timing in node.timing.values()
+        if timing.response and timing.wcet and timing.response.value < timing.wcet.value
+    }
+    for span, (node, timing) in timings.items():
+        yield Diagnostic(
+            "long-execution",
+            f"the response of `{node.id}` (`response`, {timing.response}) is below the execution time that it holds "
+            f"(`wcet`, {timing.wcet}): what is declared is taken as it is",
+            span,
+            severity=Severity.WARNING,
+            labels=(Label(timing.places["wcet"], "its execution time"),),
+            help="write the response of the longest run, or leave it out: it is computed then",
+            element=node.id,
+        )
 
 
 def large_jitter(architecture: Architecture, *, limit: Fraction) -> Iterator[Diagnostic]:

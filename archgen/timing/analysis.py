@@ -159,6 +159,8 @@ class LinkLoad:
     burst: TimingValue
     queueing: TimingValue
     topic_traffic: tuple[tuple[str, TimingValue], ...]
+    longest_sending: tuple[Fraction, str] | None = None
+    """How long the largest message takes by the bandwidth alone, in ns, and its topic; None where either is unknown."""
 
 
 @dataclass(frozen=True, slots=True)

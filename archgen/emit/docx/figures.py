@@ -221,9 +221,8 @@ def write_picture_paragraph(
     properties = "" if keep_next else '<w:keepNext w:val="0"/>'
     over = picture.width - (sheet or writer.paper.base).text_width
     if over > 0:
-        properties += '<w:ind w:left="{0}" w:right="{0}"/>'.format(
-            -round(10 * over)
-        )  # half at each side, in twentieths
+        side = -round(10 * over)  # half of it, in twentieths of a point
+        properties += f'<w:ind w:left="{side}" w:right="{side}"/>'
     xml = format_paragraph(writer.styles.find_style_id("Figure"), picture.xml, properties)
     # Two points are what a line has below the foot of a picture.
     return FlowPiece(xml, (picture.height + 2,), face.before, face.after, keep_next=keep_next, sheet=sheet)

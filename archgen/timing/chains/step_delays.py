@@ -27,7 +27,6 @@ from archgen.timing.figures.timing_values import (
     name_missing_element,
     sum_bounds,
 )
-from archgen.timing.load.link_queueing import find_longest_sending
 from archgen.timing.system.thread_pools import is_reentrant
 from archgen.timing.system.timing_system import Activity, Arc, is_sampled, is_selective_arc
 
@@ -212,8 +211,8 @@ class StepDelays:
             return replace(value, assumptions=(f"link {arc.link} takes no longer than its bandwidth lets it",))
         load = self.analysis.links.get(arc.link or "")
         queueing = load.queueing.value if load and worst else None
-        if queueing is None and load and worst and arc.link:  # of some messages the size is unknown
-            queueing, _ = find_longest_sending(self.analysis.system, arc.link) or (None, "")
+        if queueing is None and load and load.longest_sending and worst:  # of some messages the size is unknown
+            queueing, _ = load.longest_sending
         if not queueing:
             return value
         queueing_text = figure_wording.format_duration(queueing)

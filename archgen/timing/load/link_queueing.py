@@ -8,7 +8,6 @@ nothing changes.
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
-from fractions import Fraction
 from itertools import count
 
 from archgen.frozen import replace
@@ -125,10 +124,3 @@ def longest_queueing(state: PropagationState, link: str, arcs: Iterable[Arc]) ->
         return longest_busy_period(GrowingLoad(works).demand_function(), SearchBudget()) if works else 0
     except DivergedError:
         return DIVERGED_CAUSE
-
-
-def find_longest_sending(system: TimingSystem, link: str) -> tuple[Fraction, str] | None:
-    """Return how long the largest message over a link takes by the bandwidth alone, in ns, with its topic; None where unknown."""
-    bandwidth = system.bandwidths.get(link)
-    largest = max(((arc.size, arc.topic) for arc in system.arcs if arc.link == link and arc.size), default=None)
-    return (largest[0] * NS_PER_SECOND / bandwidth, largest[1]) if bandwidth and largest else None

@@ -106,7 +106,10 @@ def _build_link_load(state: PropagationState, link: str, arcs: Sequence[Arc], ra
         if isinstance(queueing_ticks, UnknownCause)
         else TimingValue(queueing_ticks * state.system.tick)
     )
-    return LinkLoad(traffic, share, _largest_burst(state, arcs, bandwidth), queueing, tuple(topic_traffic.items()))
+    burst = _largest_burst(state, arcs, bandwidth)
+    largest = max(((arc.size, arc.topic) for arc in arcs if arc.size), default=None)
+    longest_sending = (largest[0] * NS_PER_SECOND / bandwidth, largest[1]) if bandwidth and largest else None
+    return LinkLoad(traffic, share, burst, queueing, tuple(topic_traffic.items()), longest_sending)
 
 
 def _arc_traffic(rates: RateTable, arc: Arc) -> TimingValue:
