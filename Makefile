@@ -3,8 +3,8 @@
 PYTHON ?= python3
 BIN := .venv/bin
 TESTS ?= tests
-# A process of tests for each core: to collect the tests costs each of them as much as hundreds of tests.
-WORKERS ?= $(shell getconf _NPROCESSORS_ONLN)
+# A process of tests more than cores, since some wait for others; to collect the tests costs each of them as much as hundreds of tests.
+WORKERS ?= $(shell expr $$(getconf _NPROCESSORS_ONLN) + 1)
 
 .PHONY: demo test test-all properties check lint format bench mutants fuzz golden covered size language pages lock audit sbom docs vscode dist release test-lowest clean
 .DEFAULT_GOAL := help
@@ -49,9 +49,9 @@ else
 endif
 
 # The rest comes after, not among them: what builds or takes long would push others over their time limits. `-rs` says what was
-# not tried here, such as a Python that is not installed. One process more than cores: much of this is waiting for others.
+# not tried here, such as a Python that is not installed.
 test-all: .make/test-all test .make/ros
-	$(BIN)/python -m pytest -m "slow or build or browser or office or compilers or judges or ros" -rs -n $(shell expr $(WORKERS) + 1) --dist worksteal $(TESTS)
+	$(BIN)/python -m pytest -m "slow or build or browser or office or compilers or judges or ros" -rs -n $(WORKERS) --dist worksteal $(TESTS)
 
 covered: .make/test
 	-$(BIN)/python -m pytest -q tests/test_modules_are_tested.py -k has_a_test --update-covered

@@ -1,4 +1,4 @@
-"""What a property test tries: a quarter of its examples in `make test`, all where slow tests are selected; the same each time.
+"""What a property test tries: an eighth of its examples in `make test`, all where slow tests are selected; the same each time.
 
 Of samples that are tests of their own, `make test` tries the first, `make test-all` some, and `make properties` the others.
 
@@ -17,7 +17,7 @@ from hypothesis.internal.conjecture import providers
 
 FULL_PROFILE = "full"
 QUICK_PROFILE = "quick"
-_QUICK_SHARE = 4
+_QUICK_SHARE = 8
 """The quick profile tries one example of so many."""
 _QUICK_SEED_SHARE = 8
 """`make test` tries one seed of so many: the others are tests of their own."""
@@ -70,3 +70,20 @@ def mark_slow_samples(samples: Iterable[object], count: int) -> list[pytest.Para
     values = [sample if isinstance(sample, tuple) else (sample,) for sample in samples]
     further = [pytest.param(*each, marks=pytest.mark.hypothesis) for each in values[count:]]
     return [*(pytest.param(*each, marks=pytest.mark.slow) for each in values[:count]), *(further if DRAWS_ANEW else ())]
+
+
+def try_some(samples: Iterable[object], quick_count: int) -> list[pytest.ParameterSet]:
+    """Return samples of which `make test` tries `quick_count` from all over them, and `make test-all` each.
+
+    A sample of several parameters is a tuple.
+    """
+    values = list(samples)
+    quick = {index * len(values) // quick_count for index in range(quick_count)}
+    return [_make_parameters(value, is_slow=index not in quick) for index, value in enumerate(values)]
+
+
+def _make_parameters(sample: object, *, is_slow: bool) -> pytest.ParameterSet:
+    marks = [pytest.mark.slow] if is_slow else []
+    if isinstance(sample, pytest.ParameterSet):
+        return pytest.param(*sample.values, marks=[*sample.marks, *marks], id=sample.id)
+    return pytest.param(*(sample if isinstance(sample, tuple) else (sample,)), marks=marks)

@@ -56,7 +56,7 @@ def test_a_package_is_found_where_installers_write(environment: Path, tmp_path: 
     )
 
 
-@pytest.mark.parametrize("words", [AS_MODULE, AS_CODE])
+@pytest.mark.parametrize("words", [AS_MODULE, pytest.param(AS_CODE, marks=pytest.mark.slow)])
 def test_a_project_brings_no_plug_in(words: tuple[str, ...], environment: Path, tmp_path: Path) -> None:
     write_package(tmp_path, "evil", {group: {"evil": "evil:PLUGIN"} for group in installed_plugins.GROUPS}, CODE)
     (tmp_path / "archgen.yaml").write_text("archgen: 1\n", encoding="utf-8")

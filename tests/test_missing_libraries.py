@@ -44,6 +44,7 @@ def test_build_names_the_package_once_and_makes_the_rest(built: tuple[Path, str,
     assert sorted(path.name for path in folder.iterdir()) == ["packed.yaml", "report.docx", "site"]
 
 
+@pytest.mark.slow
 def test_the_report_says_what_is_missing(built: tuple[Path, str, str]) -> None:
     lines = readable.document(built[0] / "report.docx").splitlines()
     captions = [at for at, line in enumerate(lines) if re.match(r"\[Caption\] Figure \d+: ", line)]

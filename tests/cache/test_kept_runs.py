@@ -206,6 +206,7 @@ def _archgen(*words: str, settled: int = -10_000_000) -> tuple[bool, int, bytes]
     return not done.stdout.endswith(b"made"), done.returncode, done.stdout.removesuffix(b"made")
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("words", [("check",), ("generate", "ros2_launch", "-o", "out")])
 def test_all_that_python_tells_of_the_disk_was_noted(words: tuple[str, ...]) -> None:
     Path("archgen.yaml").write_text(PROJECT)
@@ -261,6 +262,7 @@ def test_a_check_says_the_same_again_until_a_file_changes() -> None:
         assert _archgen("check") == (True, *said)
 
 
+@pytest.mark.slow
 def test_a_second_generate_says_the_same_again_until_a_made_file_changes() -> None:
     Path("archgen.yaml").write_text(PROJECT)
     assert not _archgen("generate", "ros2_launch", "-o", "out")[0]

@@ -70,6 +70,7 @@ def change_something(folder: Path, chance: random.Random) -> None:
     file.write_text(text, encoding="utf-8")
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("seed", list_seeds(6))
 def test_versions_that_share_a_cache_are_judged_as_if_alone(tmp_path: Path, seed: int) -> None:
     chance, folder, cache = random.Random(seed), tmp_path / "project", VersionCache()  # noqa: S311 - the same each time

@@ -62,6 +62,7 @@ def test_deep_folders_of_a_backend_are_its_own_mistake(
     assert "it differs from the one in `HEAD`" in run("build", robot, "--only", "mine", "--trust", "HEAD").err
 
 
+@pytest.mark.slow
 def test_deep_folders_among_the_outputs_are_no_obstacle(run: Run, robot: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     (robot / "archgen.yaml").write_text("archgen: 1\nproject: {id: x}\n", encoding="utf-8")
     _nest_folders(robot / "archgen-out/wiki", monkeypatch)

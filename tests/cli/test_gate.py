@@ -9,6 +9,7 @@ import pytest
 
 from tests import repositories
 from tests.cli.conftest import Run
+from tests.property_sizes import try_some
 
 PROJECT = {
     "archgen.yaml": """\
@@ -130,7 +131,7 @@ BRANCHES: dict[str, tuple[list[Edit], int, str]] = {
 }  # fmt: skip
 
 
-@pytest.mark.parametrize(("edits", "status", "heading"), BRANCHES.values(), ids=BRANCHES.keys())
+@pytest.mark.parametrize(("edits", "status", "heading"), try_some(BRANCHES.values(), 6), ids=BRANCHES.keys())
 def test_what_a_branch_does(
     review: Callable[..., tuple[int, str]], edits: list[Edit], status: int, heading: str
 ) -> None:

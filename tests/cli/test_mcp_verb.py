@@ -28,6 +28,7 @@ def ask(server: object, *questions: tuple[str, dict[str, Any]]) -> list[tuple[bo
     return asyncio.run(_ask(server, list(questions)))
 
 
+@pytest.mark.slow
 def test_answers_are_those_of_the_verbs(run: Run) -> None:
     answers = ask(
         make_server(ROBOT),

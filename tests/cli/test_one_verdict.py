@@ -195,6 +195,7 @@ def check_lists(run: Run, robot: Path, chains: dict[str, dict[str, object]]) -> 
                 assert chains[late[1]]["verdict"] == "not proven"
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("seed", mark_further_samples([24, 17, 51]))
 def test_what_is_read_and_written_quickly_says_the_same(run: Run, tmp_path: Path, seed: int) -> None:
     assert read_quick(run, tmp_path, seed)

@@ -63,6 +63,7 @@ def test_without_partners_and_chains_there_is_the_picture_alone(run: Run, tmp_pa
     assert (ran.status, "the template is no PowerPoint file" in ran.err) == (2, True)
 
 
+@pytest.mark.slow
 def test_of_forty_partners_and_nine_chains_each_is_there(run: Run, tmp_path: Path) -> None:
     names = [f"p{at}" for at in range(40)]
     partners = ", ".join(f"{name}: {{title: Partner {name}}}" for name in names)

@@ -20,6 +20,7 @@ from archgen.views.lookup import Lookup
 from tests.agreeing import view
 from tests.compare.conftest import Compared, JudgeText
 from tests.compare.test_whom_a_change_concerns import CASES, HARVESTER
+from tests.property_sizes import try_some
 
 PERSONS = "`sensing.detector.persons` from Vega to Kite and Orsa"
 ROWS = "`sensing.finder.rows` from Vega to Orsa"
@@ -126,7 +127,7 @@ def test_what_follows_from_one_cause_is_told_once(
     assert lines == told
 
 
-@pytest.mark.parametrize("name", CASES)
+@pytest.mark.parametrize("name", try_some(CASES, 12))
 def test_json_has_all_of_it(compared: Compared, name: str) -> None:
     schema = json.loads(resources.resource_path("schemas", "diff.schema.json").read_text(encoding="utf-8"))
     comparison = compared(HARVESTER, _edit(name))
@@ -148,7 +149,7 @@ def harvester(judge_text: JudgeText) -> Lookup:
     return view(judge_text(HARVESTER))
 
 
-@pytest.mark.parametrize("name", CASES)
+@pytest.mark.parametrize("name", try_some(CASES, 12))
 def test_what_an_agreement_shows_as_another_figure_is_told(
     judge_text: JudgeText, harvester: Lookup, compared: Compared, name: str
 ) -> None:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import pytest
 
 from tests.compare.conftest import Compared
+from tests.property_sizes import try_some
 
 HARVESTER = """\
 archgen: 1
@@ -146,7 +147,7 @@ CASES = {
 }  # fmt: skip
 
 
-@pytest.mark.parametrize("name", CASES)
+@pytest.mark.parametrize("name", try_some(CASES, 12))
 def test_whom_a_change_concerns(compared: Compared, name: str) -> None:
     edits, owners = CASES[name]
     after = HARVESTER

@@ -20,7 +20,7 @@ from archgen.products.workspace_product import write_workspace
 from tests import hostile
 from tests.judged_projects import judge_shipped
 from tests.outside_tools import run_judge
-from tests.property_sizes import mark_further_samples
+from tests.property_sizes import mark_further_samples, try_some
 from tests.running import ROOT, contents
 
 GENERATORS = [name for name, each in find_backends(ROOT / "docs")[0].items() if each.makes == "workspace"]
@@ -74,7 +74,7 @@ def judged_twice(request: pytest.FixtureRequest) -> tuple[CheckedProject, Checke
     return judge_shipped(ROOT / request.param), check_project(ROOT / request.param)
 
 
-@pytest.mark.parametrize("generator", GENERATORS)
+@pytest.mark.parametrize("generator", try_some(GENERATORS, 8))
 def test_the_same_input_gives_the_same_bytes(
     generator: str, tmp_path: Path, judged_twice: tuple[CheckedProject, CheckedProject]
 ) -> None:

@@ -9,6 +9,7 @@ from typing import Any
 import pytest
 import yaml
 
+from tests.property_sizes import try_some
 from tests.running import archgen_here
 
 ROBOT = """\
@@ -73,7 +74,7 @@ def generate(project: dict[str, Any], backends: tuple[str, ...], folder: Path, c
     return {path.relative_to(folder / "ws").as_posix(): path.read_bytes() for path in written}
 
 
-@pytest.mark.parametrize("kind", [*BACKENDS, "envelope"])
+@pytest.mark.parametrize("kind", try_some([*BACKENDS, "envelope"], 2))
 def test_moved_lines_and_comments_change_no_generated_byte(kind: str, tmp_path: Path) -> None:
     distro = kind if kind in {"jazzy", "noetic"} else "jazzy"
     text = ROBOT.replace("DISTRO", distro).replace("LANGUAGE", f"language: {'cpp' if kind == 'cpp' else 'python'}")

@@ -13,6 +13,7 @@ from archgen.products.project_views import select_elements
 from archgen.products.workspace_product import WorkspaceResult, write_workspace
 from archgen.views.generation.generation_context import GenerationContext
 from tests.outside_tools import run_judge
+from tests.property_sizes import try_some
 from tests.running import ROOT
 
 PARTS = ("owner:lab", "owner:works")
@@ -87,7 +88,7 @@ def _without(files: dict[str, bytes], left_out: set[str]) -> dict[str, bytes]:
     return {path: data for path, data in files.items() if path not in left_out}
 
 
-@pytest.mark.parametrize("backend", BACKENDS)
+@pytest.mark.parametrize("backend", try_some(BACKENDS, 3))
 def test_runs_of_two_partners_touch_nothing_of_one_another(backend: str, tmp_path: Path) -> None:
     checked = _check(tmp_path / "project", "noetic" if backend.startswith("ros1") else "jazzy")
     made: list[dict[str, bytes]] = []

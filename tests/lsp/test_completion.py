@@ -9,6 +9,7 @@ import pytest
 
 from tests.lsp.client import Client
 from tests.lsp.conftest import Workspace
+from tests.property_sizes import try_some
 
 STATE = "groups/robot_state.yaml"
 ROWS = [
@@ -118,7 +119,7 @@ OWN_ROWS = [
 ]
 
 
-@pytest.mark.parametrize(("old", "new", "labels"), OWN_ROWS)
+@pytest.mark.parametrize(("old", "new", "labels"), try_some(OWN_ROWS, 2))
 def test_ports_are_those_of_what_stands_around_and_parameters_are_types(
     tmp_path: Path, old: str, new: str, labels: list[str]
 ) -> None:

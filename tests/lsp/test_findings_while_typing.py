@@ -70,6 +70,7 @@ def _is_published(client: Client, expected: object) -> bool:
     return simplify_published(client) == expected
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", [pytest.param("example_ramcip", marks=pytest.mark.slow), "examples/arm"])
 def test_at_rest_it_says_what_a_check_says(tmp_path: Path, name: str) -> None:
     folder = (tmp_path / "p").resolve()

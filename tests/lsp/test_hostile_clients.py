@@ -33,6 +33,7 @@ def still_works(client: Client) -> bool:
     return "**group** `g`" in client.at("hover", "archgen.yaml", 2, 10)["contents"]["value"]
 
 
+@pytest.mark.slow
 def test_positions_beyond_the_text_are_answered(folder: Path) -> None:
     with Client(folder) as client:
         client.open("archgen.yaml")
@@ -47,6 +48,7 @@ def test_positions_beyond_the_text_are_answered(folder: Path) -> None:
         assert still_works(client)
 
 
+@pytest.mark.slow
 def test_messages_that_are_none_are_answered_or_left_alone(folder: Path) -> None:
     with Client(folder) as client:
         client.open("archgen.yaml")

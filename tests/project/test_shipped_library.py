@@ -18,6 +18,7 @@ from archgen.model.message_types import full_message_name
 from archgen.project import library_reading
 from archgen.project.library_reading import load_shipped_component_types, read_shipped_document
 from archgen.syntax.yaml_tree import MappingNode, SequenceNode, YamlNode, node_to_data
+from tests.property_sizes import try_some
 from tests.repositories import repository
 from tests.running import ROOT, archgen_here
 
@@ -51,7 +52,7 @@ _NAMED_BY_EACH_INSTANCE = {"ldlidar", "topic_relay", "topic_throttle"}
 """What these publish has a name that only a parameter of each instance says."""
 
 
-@pytest.mark.parametrize("distro", KNOWN_DISTROS)
+@pytest.mark.parametrize("distro", try_some(KNOWN_DISTROS, 2))
 def test_an_instance_of_each_type_needs_its_inputs_and_the_parameters_that_nobody_can_know(
     distro: str, tmp_path: Path
 ) -> None:
@@ -127,7 +128,7 @@ def test_the_table_of_distributions_names_what_there_is() -> None:
         assert len(names) == len(set(names)), distro
 
 
-@pytest.mark.parametrize("distro", KNOWN_DISTROS)
+@pytest.mark.parametrize("distro", try_some(KNOWN_DISTROS, 2))
 def test_of_some_packages_all_types_are_found_without_the_rest_of_the_files(distro: str) -> None:
     types = load_shipped_component_types(distro)
     names_by_package: dict[str, set[str]] = {}

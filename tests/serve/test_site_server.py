@@ -274,6 +274,7 @@ def serve(project: Path, *words: str) -> subprocess.Popen[str]:
         signal.signal(signal.SIGINT, before)
 
 
+@pytest.mark.slow
 def test_the_verb_serves_and_ends_cleanly_when_it_is_interrupted(robot: Path) -> None:
     process = serve(robot, "--port", "0")
     assert process.stdout is not None

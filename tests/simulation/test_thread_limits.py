@@ -12,6 +12,7 @@ from archgen.model.declared_timing import SchedulingOrder
 from archgen.simulation.event_loop import run_plan
 from archgen.simulation.plan_builder import build_plan
 from archgen.timing.system.timing_system import Activity, Arc, Executor, ResourceUse, SharedResource, StoringCallback
+from tests.property_sizes import try_some
 from tests.simulation.systems import MS, arc, event, system, timed
 
 ORDERS: tuple[SchedulingOrder | None, ...] = (
@@ -64,7 +65,7 @@ def _count_at_once(intervals: list[tuple[int, int]]) -> int:
     return most
 
 
-@pytest.mark.parametrize("first", range(0, 200, 50))
+@pytest.mark.parametrize("first", try_some(range(0, 200, 50), 2))
 def test_threads_and_groups_are_never_taken_twice(first: int) -> None:
     jobs_seen = 0
     for seed in range(first, first + 50):

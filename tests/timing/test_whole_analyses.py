@@ -20,6 +20,7 @@ from archgen.timing.chains.element_index import MeasuredBasis
 from archgen.timing.chains.fused_inputs import find_fused_inputs
 from archgen.timing.figures.figure_wording import format_duration
 from archgen.timing.run_analysis import analyse_architecture
+from tests.property_sizes import try_some
 from tests.timing.hand_reader import read_equations
 from tests.timing.printed import show_ms
 from tests.timing.random_systems import architecture
@@ -40,7 +41,7 @@ from tests.timing.sketches import (
 CASES = sorted((Path(__file__).parent / "cases").glob("*.txt"))
 
 
-@pytest.mark.parametrize("case", CASES, ids=lambda case: case.stem)
+@pytest.mark.parametrize("case", try_some(CASES, 20), ids=lambda case: case.stem)
 def test_all_that_follows_from_a_system(case: Path, request: pytest.FixtureRequest) -> None:
     text = case.read_text(encoding="utf-8").partition("---\n")[0]
     lines = list(list_everything(architecture(text)))

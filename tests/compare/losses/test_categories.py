@@ -5,6 +5,7 @@ from __future__ import annotations
 import pytest
 
 from tests.compare.conftest import Compared
+from tests.property_sizes import try_some
 
 ROBOT = """\
 project: {id: robot}
@@ -269,7 +270,7 @@ def losses(compared: Compared, before: str, edits: list[tuple[str, str]]) -> lis
     ]
 
 
-@pytest.mark.parametrize(("edits", "expected"), TABLE.values(), ids=TABLE.keys())
+@pytest.mark.parametrize(("edits", "expected"), try_some(TABLE.values(), 25), ids=TABLE.keys())
 def test_what_a_loss_is_called(compared: Compared, edits: list[tuple[str, str]], expected: list[str]) -> None:
     assert losses(compared, ROBOT, edits) == expected
 

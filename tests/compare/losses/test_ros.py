@@ -6,6 +6,7 @@ import pytest
 
 from tests.compare.conftest import Compared
 from tests.compare.losses.test_losses import BASE, broken
+from tests.property_sizes import try_some
 
 NODES = (
     BASE
@@ -306,7 +307,7 @@ NAMES = {
 }  # fmt: skip
 
 
-@pytest.mark.parametrize(("project", "edits", "said"), NAMES.values(), ids=NAMES.keys())
+@pytest.mark.parametrize(("project", "edits", "said"), try_some(NAMES.values(), 27), ids=NAMES.keys())
 def test_names_and_quality(compared: Compared, project: str, edits: list[tuple[str, str]], said: list[str]) -> None:
     assert broken(compared, project, edits) == said
 

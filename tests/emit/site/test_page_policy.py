@@ -85,6 +85,7 @@ def test_a_script_in_a_page_would_not_run(browser: Browser, example: Path, tmp_p
     page.close()
 
 
+@pytest.mark.slow
 def test_no_page_is_heavy_without_its_pictures(example: Path) -> None:
     heavy = {}
     for path in example.rglob("*.html"):

@@ -20,6 +20,7 @@ from archgen.views.generation.generation_context import GenerationContext
 from tests import hostile
 from tests.judged_projects import judge_ramcip, judge_shipped
 from tests.plugins.aadl.aadl_judge import Classifier, find_member, judge_packages
+from tests.property_sizes import try_some
 from tests.running import ROOT, contents
 
 EXAMPLES = [
@@ -95,7 +96,7 @@ def find_line(text: str, pattern: str) -> str:
     return line
 
 
-@pytest.mark.parametrize("example", EXAMPLES)
+@pytest.mark.parametrize("example", try_some(EXAMPLES, 4))
 def test_every_example_is_aadl(example: str, tmp_path: Path) -> None:
     project = judge_shipped(ROOT / example)
     packages = judge_packages(write_files(project, tmp_path))

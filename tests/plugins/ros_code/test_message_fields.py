@@ -9,6 +9,7 @@ import pytest
 
 from archgen.plugins.ros_code.node_programs import list_message_fields
 from tests.plugins.ros_code.test_ros2_cpp import write_project
+from tests.property_sizes import try_some
 from tests.running import archgen_here
 
 ROBOT = """\
@@ -206,7 +207,7 @@ def _change_service(folder: Path, language: str, own_path: str, add_code: Callab
     return [line for line in told if "wheels" in line]
 
 
-@pytest.mark.parametrize("form", ANSWERS)
+@pytest.mark.parametrize("form", try_some(ANSWERS, 3))
 def test_a_client_in_python_is_told_of_fields_of_the_answer_that_are_gone(tmp_path: Path, form: str) -> None:
     code, places = ANSWERS[form]
     text = f'"""Mine."""\n\n\nclass Wheels:\n    def __init__(self, node):\n        self.node = node\n{code}'

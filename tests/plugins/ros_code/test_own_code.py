@@ -9,7 +9,7 @@ from pathlib import Path
 
 import pytest
 
-from tests.property_sizes import mark_further_samples
+from tests.property_sizes import mark_further_samples, try_some
 from tests.repositories import git
 from tests.running import archgen_here
 
@@ -252,7 +252,7 @@ TOLD_ELSEWHERE = frozenset(
 """Changes that other files have to be mended for, too."""
 
 
-@pytest.mark.parametrize("change", CHANGES)
+@pytest.mark.parametrize("change", try_some(CHANGES, 5))
 def test_each_change_is_told_with_its_line_until_own_code_fits(farm: Path, backend: str, change: str) -> None:
     edits, name, expected, mends = CHANGES[change]
     robot = ROBOT

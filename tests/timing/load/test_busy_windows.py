@@ -96,6 +96,7 @@ def test_a_host_with_a_thousand_elements_and_95_per_cent(derived: Derived, prior
     assert all(response.worst.complete and response.worst.value for response in found.responses.values())
 
 
+@pytest.mark.slow
 def test_what_has_no_end_is_given_up_in_time(derived: Derived) -> None:
     """A hundred chains, each from one host to the other and back: each response makes the next jitter larger."""
     rows = [(f"{letter}{number}", letter) for number in range(100) for letter in "abcd"]

@@ -35,6 +35,7 @@ def _rising_chains(**steps_and_costs: tuple[int, int]) -> str:
     return "\n".join(["groups:\n  g:\n    components:", *components, "nodes:", *nodes, f"hosts: {{{hosts}}}\n"])
 
 
+@pytest.mark.slow
 def test_hosts_without_a_bound_take_none_from_a_host_that_is_not_connected(derived: Derived) -> None:
     alone = analyse_architecture(derived(_rising_chains(good=(15, 1)))).responses
     crowd = {f"bad{letter}": (8, 4) for letter in "abcdef"}

@@ -8,6 +8,7 @@ import pytest
 
 from archgen.timing.figures.figure_wording import write_exact_duration
 from archgen.timing.search.chain_budgets import ChainBudget, UnknownBudgetError, find_chain_budget, share_chain_budget
+from tests.property_sizes import try_some
 from tests.timing.random_systems import architecture
 from tests.timing.search.trials import bound_with, start_trials
 from tests.timing.sketches import sketch
@@ -46,7 +47,7 @@ def test_what_is_as_written_is_not_late_and_the_bound_is_what_the_test_is_about(
     assert bound == Fraction("181.5") * 10**6
 
 
-@pytest.mark.parametrize("deadline", DEADLINES)
+@pytest.mark.parametrize("deadline", try_some(DEADLINES, 1))
 def test_each_figure_that_is_printed_keeps_the_deadline_and_a_tick_more_does_not(deadline: str) -> None:
     model, budget = architecture(_read(deadline)), _find_budget(deadline)
     assert {(figure.activity, figure.key) for figure in budget.figures} >= {
@@ -65,7 +66,7 @@ def test_each_figure_that_is_printed_keeps_the_deadline_and_a_tick_more_does_not
             assert bound_with(model, least_text)["c"].verdict != "met", least_text
 
 
-@pytest.mark.parametrize("deadline", DEADLINES)
+@pytest.mark.parametrize("deadline", try_some(DEADLINES, 1))
 def test_all_that_share_a_factor_keep_the_deadline_and_a_thousandth_more_does_not(deadline: str) -> None:
     model, shared = architecture(_read(deadline)), _find_budget(deadline).shared
     assert shared.factor is not None

@@ -167,6 +167,7 @@ def test_triggers_may_prove_what_no_floor_forbids(seed: int, words: str) -> None
     assert words in proposal.best.words
 
 
+@pytest.mark.slow
 def test_who_asks_gets_more_tries_than_who_did_not() -> None:
     """What proves its chains is the 7th move from the best order: with half of the tries it is not found."""
     asked = draw_late_system(247)
@@ -179,6 +180,7 @@ def test_who_asks_gets_more_tries_than_who_did_not() -> None:
     assert propose_for(asked).best.late == ()
 
 
+@pytest.mark.slow
 def test_tries_are_counted_and_the_same_each_time(monkeypatch: pytest.MonkeyPatch) -> None:
     asked = architecture(ROBOT, is_fair=True)
     assert propose_for(asked, 3).is_cut

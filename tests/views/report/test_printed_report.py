@@ -53,6 +53,7 @@ def _list_all(outline: Outline) -> list[str]:
     return texts + (list(list_block_texts(outline.title_table)) if outline.title_table else [])
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("ros_place", mark_further_samples(["annex", "inline"]))
 def test_nothing_is_lost_with_everything(views: ProjectViews, ros_place: str) -> None:
     edition = replace(views.edition, ros_place=ros_place)  # type: ignore[arg-type]

@@ -13,6 +13,7 @@ from archgen.syntax.yaml_writer import write_yaml
 from tests.judged_projects import judge_shipped
 from tests.plugins.ros_code.launch.launch_reading import make_launch_workspace
 from tests.plugins.ros_code.launch.test_launch_files import write_simple
+from tests.property_sizes import try_some
 from tests.running import RAMCIP, ROOT
 
 EXAMPLES = {
@@ -59,7 +60,7 @@ def list_nodes(checked: CheckedProject, *, with_values: bool) -> dict[str, dict[
     return nodes
 
 
-@pytest.mark.parametrize("name", EXAMPLES)
+@pytest.mark.parametrize("name", try_some(EXAMPLES, 2))
 def test_examples_come_back(name: str, tmp_path: Path) -> None:
     project = judge_shipped(EXAMPLES[name])
     ros = 1 if project.architecture.distro == "noetic" else 2

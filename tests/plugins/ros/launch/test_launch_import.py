@@ -10,6 +10,7 @@ import pytest
 
 from archgen.importers.foreign_import import ForeignFileError, ForeignImport
 from archgen.plugins.ros.launch.launch_import import read_launch
+from tests.property_sizes import try_some
 
 PYTHON_HEAD = """\
 import os
@@ -598,20 +599,25 @@ def test_what_cannot_be_read_is_told(name: str, data: bytes, message: str, tmp_p
 
 @pytest.mark.parametrize(
     "body",
-    [
-        "x = []\nx.append(x)\nx.append(x)\nreturn LaunchDescription([Node(package='p', executable='e', name=x)] + x)",
-        "x = 'ab'\nfor i in range(1000):\n    x = x + x\nreturn LaunchDescription([Node(package='p', executable='e', name=x)])",
-        "x = LaunchConfiguration('a')\nfor i in range(60):\n    x = [x, x]\nreturn LaunchDescription([Node(package='p', executable='e', name=x)])",
-        "x = LaunchConfiguration('a')\nfor i in range(60):\n    x = f'{x}{x}'\nreturn LaunchDescription([Node(package='p', executable='e', name=x)])",
-        "def f(n):\n    return f(n + 1)\nreturn LaunchDescription([f(0)])",
-        "while True:\n    pass\nreturn LaunchDescription([])",
-        "return LaunchDescription([Node(package='p', executable='e', name=str(i)) for i in range(1000) for j in range(1000)])",
-        "for a in range(1000):\n    for b in range(1000):\n        for c in range(1000):\n            x = 1\nreturn LaunchDescription([])",
-        "return LaunchDescription([Node(package='p', executable='e', name=10 ** 10 ** 10)])",
-        "return LaunchDescription([" + "[" * 90 + "]" * 90 + "])",
-        "x = " + " + ".join(["'a'"] * 800) + "\nreturn LaunchDescription([Node(package='p', executable='e', name=x)])",
-        "open('trace', 'w').write('x')\n__import__('os').system('touch trace')\nreturn LaunchDescription([])",
-    ],
+    try_some(
+        [
+            "x = []\nx.append(x)\nx.append(x)\nreturn LaunchDescription([Node(package='p', executable='e', name=x)] + x)",
+            "x = 'ab'\nfor i in range(1000):\n    x = x + x\nreturn LaunchDescription([Node(package='p', executable='e', name=x)])",
+            "x = LaunchConfiguration('a')\nfor i in range(60):\n    x = [x, x]\nreturn LaunchDescription([Node(package='p', executable='e', name=x)])",
+            "x = LaunchConfiguration('a')\nfor i in range(60):\n    x = f'{x}{x}'\nreturn LaunchDescription([Node(package='p', executable='e', name=x)])",
+            "def f(n):\n    return f(n + 1)\nreturn LaunchDescription([f(0)])",
+            "while True:\n    pass\nreturn LaunchDescription([])",
+            "return LaunchDescription([Node(package='p', executable='e', name=str(i)) for i in range(1000) for j in range(1000)])",
+            "for a in range(1000):\n    for b in range(1000):\n        for c in range(1000):\n            x = 1\nreturn LaunchDescription([])",
+            "return LaunchDescription([Node(package='p', executable='e', name=10 ** 10 ** 10)])",
+            "return LaunchDescription([" + "[" * 90 + "]" * 90 + "])",
+            "x = "
+            + " + ".join(["'a'"] * 800)
+            + "\nreturn LaunchDescription([Node(package='p', executable='e', name=x)])",
+            "open('trace', 'w').write('x')\n__import__('os').system('touch trace')\nreturn LaunchDescription([])",
+        ],
+        3,
+    ),
 )
 def test_hostile_python_ends_and_runs_nothing(body: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir(tmp_path)

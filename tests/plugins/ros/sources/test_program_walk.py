@@ -11,6 +11,7 @@ from archgen.importers.work_budget import WorkBudget
 from archgen.plugins.ros.sources.program_walk import ProgramWalk
 from archgen.plugins.ros.sources.source_index import SourceIndex
 from archgen.plugins.ros.sources.walk_values import find_unknown, settle, show_value
+from tests.property_sizes import try_some
 
 
 def walk(
@@ -422,7 +423,7 @@ HOSTILE = {
 }
 
 
-@pytest.mark.parametrize("name", HOSTILE)
+@pytest.mark.parametrize("name", try_some(HOSTILE, 9))
 def test_hostile_sources(tmp_path: Path, name: str) -> None:
     """Sources that are broken, deep or endless cost little, and what cannot be read is said."""
     if name.endswith(".cpp"):

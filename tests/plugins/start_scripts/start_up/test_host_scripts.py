@@ -75,6 +75,7 @@ def test_it_starts_in_order_and_stops_in_reverse(script: Path, port: int, tmp_pa
     assert stage.read_told("a")[0]["folder"] == str(script.parent)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM, signal.SIGHUP])
 def test_a_signal_in_the_middle_stops_what_was_started(
     script: Path, port: int, tmp_path: Path, number: signal.Signals
@@ -90,6 +91,7 @@ def test_a_signal_in_the_middle_stops_what_was_started(
     assert "not up    b: not started, it waits for a" in run.output
 
 
+@pytest.mark.slow
 def test_the_end_of_one_program_stops_all_and_is_said(script: Path, port: int, tmp_path: Path) -> None:
     run, stage = start(script, tmp_path, port)
     run.wait_for("up        all: 4 steps")
@@ -135,6 +137,7 @@ def test_what_does_not_end_by_an_interrupt_is_terminated(script: Path, port: int
     assert stage.journal[-3:] == ["stop b", "stop a", "stop world"]
 
 
+@pytest.mark.slow
 def test_when_the_script_itself_is_killed_nothing_is_left(script: Path, port: int, tmp_path: Path) -> None:
     run, _ = start(script, tmp_path, port)
     run.wait_for("up        all: 4 steps")
@@ -157,6 +160,7 @@ def test_where_no_log_can_be_written_nothing_starts(script: Path, port: int, tmp
     assert stage.journal == []
 
 
+@pytest.mark.slow
 def test_it_needs_no_home(script: Path, port: int, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     for name in ("HOME", "USER", "LOGNAME", "TMPDIR"):
         monkeypatch.delenv(name, raising=False)
@@ -167,6 +171,7 @@ def test_it_needs_no_home(script: Path, port: int, tmp_path: Path, monkeypatch: 
     assert stage.journal.count("start world") == 1
 
 
+@pytest.mark.slow
 def test_it_does_not_run_twice(script: Path, port: int, tmp_path: Path) -> None:
     run, stage = start(script, tmp_path, port)
     run.wait_for("up        all: 4 steps")
@@ -223,6 +228,7 @@ def test_a_lifecycle_node_that_respawns_is_brought_into_its_state_again(tmp_path
     ]
 
 
+@pytest.mark.slow
 def test_what_is_not_up_in_time_is_said(port: int, tmp_path: Path) -> None:
     run, stage = start(make_script(tmp_path, port, within="500 ms"), tmp_path, port, ports={})
     assert run.wait_for_end() == 1
@@ -230,6 +236,7 @@ def test_what_is_not_up_in_time_is_said(port: int, tmp_path: Path) -> None:
     assert "start a" not in stage.journal
 
 
+@pytest.mark.slow
 def test_what_runs_once_has_its_time(port: int, tmp_path: Path) -> None:
     script = make_script(tmp_path, port, old="once: true", new="once: true, ready: {within: 1 s}")
     run, _ = start(script, tmp_path, port, ends={})

@@ -122,6 +122,7 @@ def test_it_has_to_be_told_how_to_reach_the_computers(script: Path, ports: list[
     assert stage.journal == []
 
 
+@pytest.mark.slow
 def test_it_reaches_others_by_ssh(script: Path, ports: list[int], tmp_path: Path) -> None:
     stage = make_stage(tmp_path, ports)
     stage.add_program("ssh", f'echo "$@" >> {tmp_path}/ssh; for line; do :; done; exec sh -c "$line"')

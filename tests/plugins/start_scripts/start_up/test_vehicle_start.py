@@ -81,6 +81,7 @@ def test_it_has_the_size_of_the_papers_script(script: Path) -> None:
     assert 50 < len(lines) < 90
 
 
+@pytest.mark.slow
 def test_it_comes_up_in_order_and_stops_in_reverse(script: Path, ports: list[int], tmp_path: Path) -> None:
     run, stage = start(script, tmp_path, ports)
     run.wait_for("up        all: 12 steps")
@@ -96,6 +97,7 @@ def test_it_comes_up_in_order_and_stops_in_reverse(script: Path, ports: list[int
     assert {f"{name}.log" for name in PLANNED} | {"start.log"} == {file.name for file in run.log_folder.iterdir()}
 
 
+@pytest.mark.slow
 def test_killed_in_the_middle_it_stops_what_was_started(script: Path, ports: list[int], tmp_path: Path) -> None:
     run, stage = start(script, tmp_path, ports, says="")
     run.wait_for("starting  event_cache")
