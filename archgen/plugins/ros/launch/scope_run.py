@@ -5,6 +5,7 @@ Values of launch arguments that are given on the command line, and what files de
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -30,6 +31,7 @@ from archgen.plugins.ros.launch.launch_values import (
 )
 
 _MAX_SHOWN = 12
+_VARIABLE_WITHOUT_VALUE = re.compile(r"\$\(env (\w+)\)")
 
 
 @dataclass(slots=True)
@@ -104,6 +106,7 @@ class ScopeRun:
         """The files that are read just now, each included by the one before."""
         self._read_files: set[Path] = set()
         self._seen_notes: set[tuple[str, str, int, str]] = set()
+        self._asked_variables: set[str] = set()
         self._handlers: dict[ActionKind, Callable[[LaunchAction], None]] = {
             "argument": self._run_argument,
             "configure": self._run_configure,
@@ -261,10 +264,14 @@ class ScopeRun:
         return False
 
     def add_note(self, kind: str, message: str, span: Span, help_line: str = "", fate: str = "not taken") -> None:
-        """Add a note, once for each place."""
+        """Add a note, once for each place. The first one about a variable of the environment says who gives it a value."""
         key = (span.file, kind, span.line, message)
         if key not in self._seen_notes:
             self._seen_notes.add(key)
+            missing = [name for name in _VARIABLE_WITHOUT_VALUE.findall(message) if name not in self._asked_variables]
+            if missing and not help_line:
+                self._asked_variables.update(missing)
+                help_line = "say what it is: " + " ".join(f"`--env {name}=VALUE`" for name in dict.fromkeys(missing))
             self.notes.append(ImportNote(kind, message, span, help_line, fate))
 
     def take_notes(self) -> list[ImportNote]:

@@ -88,3 +88,12 @@ def test_what_cannot_be_given_is_refused(  # noqa: PLR0913, PLR0917 - a case eac
     assert caught.value.message.startswith(message)
     assert caught.value.span.line == line
     assert help_line in caught.value.help_line
+
+
+def test_the_first_note_about_a_variable_says_how_to_give_its_value(tmp_path: Path) -> None:
+    node = '<node pkg="p" exec="e" name="n%d" namespace="$(env ROBOT_%s)"/>'
+    (tmp_path / "a.launch.xml").write_text(
+        f"<launch>\n{node % (1, 'A')}\n{node % (2, 'A')}\n{node % (3, 'B')}\n</launch>\n", encoding="utf-8"
+    )
+    told = {note.span.line: note.help_line for note in read_launch([tmp_path / "a.launch.xml"]).notes}
+    assert told == {2: "say what it is: `--env ROBOT_A=VALUE`", 3: "", 4: "say what it is: `--env ROBOT_B=VALUE`"}
