@@ -17,6 +17,7 @@ from tests.property_sizes import (
     count_examples,
     list_seeds,
     mark_further_samples,
+    try_some,
 )
 
 
@@ -34,8 +35,8 @@ def profile() -> Iterator[None]:
         ("", 400),
         ("slow", 400),
         ("not build", 400),
-        ("not slow", 100),
-        ("not slow and not build and not ros", 100),
+        ("not slow", 50),
+        ("not slow and not build and not ros", 50),
     ],
 )
 def test_all_examples_are_tried_unless_slow_tests_are_left_out(
@@ -52,11 +53,11 @@ def test_one_example_at_least_is_tried(pytestconfig: pytest.Config, monkeypatch:
     assert count_examples(1) == 1
 
 
-def test_properties_without_a_number_of_their_own_try_a_quarter_too(pytestconfig: pytest.Config) -> None:
+def test_properties_without_a_number_of_their_own_try_an_eighth_too(pytestconfig: pytest.Config) -> None:
     choose_profile(pytestconfig)
     quick = settings.get_current_profile_name() == QUICK_PROFILE
     assert settings.default is not None
-    assert settings.default.max_examples == (25 if quick else 100)
+    assert settings.default.max_examples == (12 if quick else 100)
 
 
 def test_no_property_fails_for_the_time_that_it_takes(pytestconfig: pytest.Config) -> None:
@@ -125,3 +126,14 @@ def test_the_same_is_drawn_whatever_was_imported_before(tmp_path: Path, monkeypa
     monkeypatch.syspath_prepend(tmp_path)
     importlib.import_module("imported_between_draws")
     assert _draw() == before
+
+
+def test_some_from_all_over_the_samples_are_quick_and_none_is_left_out() -> None:
+    named = pytest.param("c", marks=pytest.mark.build, id="third")
+    tried = try_some(["a", ("b",), named, "d"], 2)
+    assert [(each.values, [mark.name for mark in each.marks], each.id) for each in tried] == [
+        (("a",), [], None),
+        (("b",), ["slow"], None),
+        (("c",), ["build"], "third"),
+        (("d",), ["slow"], None),
+    ]
