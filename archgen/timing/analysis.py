@@ -251,6 +251,8 @@ class ChainTerm:
     link: TimingValue
     why: str
     at: Span = field(default=NO_SPAN, compare=False, repr=False)
+    counted_at: str = ""
+    """The activity at which the work of this one is counted, as far as `response` does not say more; empty: at this one."""
 
 
 @dataclass(frozen=True, slots=True)

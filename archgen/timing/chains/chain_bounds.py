@@ -185,16 +185,22 @@ def build_terms(network: CostNetwork, path: CostedPath) -> tuple[ChainTerm, ...]
     chain_terms = [
         ChainTerm(name, start_delay.value, network.start_response(name), ZERO_VALUE, start_delay.why, start_delay.at)
     ]
+    counting = name
     for arc in (network.arcs[arc_index] for arc_index in path.arcs):
-        step_delay = steps.sampling_delay(arc)
+        step_delay, response, why = steps.sampling_delay(arc), network.step_response(arc), ""
+        if not steps.continues_run(arc, network.runs):
+            counting = arc.target
+        elif response.value is not None:
+            why = f", {'this much more than' if response.value else 'its work'} counted at {counting}"
         chain_terms.append(
             ChainTerm(
                 arc.target,
                 step_delay.value,
-                network.step_response(arc),
+                response,
                 steps.link_latency(arc),
-                step_delay.why,
+                step_delay.why + why,
                 step_delay.at,
+                counting if why else "",
             )
         )
     return tuple(chain_terms)

@@ -13,7 +13,7 @@ from archgen.frozen import NamedTuple
 from archgen.model.component import Component
 from archgen.model.element_ids import make_id, make_unique_id
 from archgen.model.node import Node
-from archgen.timing.analysis import ChainResult
+from archgen.timing.analysis import ChainResult, ChainTerm
 from archgen.timing.chains.chain_advice import sum_known_parts
 from archgen.timing.chains.element_flows import ElementFlow, UnjudgedWay
 from archgen.timing.figures.tick_unit import NS_PER_SECOND
@@ -188,13 +188,12 @@ def make_chain_share_table(lookup: Lookup, element_id: str, title: str, activiti
         (
             inline_text.to_inlines(Text(lookup.architecture.chains[result.id].title, ref=f"chain:{result.id}")),
             chain_status.chain_meter(result),
-            # Of a chain with gaps this is what is known.
-            *(timing_tables.duration_cell(TimingValue(each, result.bound.complete)) for each in sums),
+            *_write_shares(result, first, sums),
             timing_tables.duration_cell(result.bound),
             timing_tables.deadline_cell(result),
             chain_status.chain_chip(result),
         )
-        for result, sums in _list_chains_through(lookup, {each.id for each in activities})
+        for result, first, sums in _list_chains_through(lookup, {each.id for each in activities})
     ]
     columns = make_columns(
         ("Chain", 1.6),
@@ -210,14 +209,25 @@ def make_chain_share_table(lookup: Lookup, element_id: str, title: str, activiti
     return table if rows else None
 
 
-def _list_chains_through(lookup: Lookup, own_ids: Collection[str]) -> Iterator[tuple[ChainResult, list[Fraction]]]:
-    """Yield the chains that run through activities, with what is known of the time (ns) before, in and after these."""
+def _write_shares(result: ChainResult, first: ChainTerm, sums: Sequence[Fraction]) -> Iterator[Inlines]:
+    """Yield the cells of the time before, in and after an element. Of a chain with gaps this is what is known."""
+    for index, known_sum in enumerate(sums):
+        if index == 1 and not known_sum and first.counted_at:
+            yield (Text("with ", muted=True), Text(first.counted_at, code=True))
+        else:
+            yield timing_tables.duration_cell(TimingValue(known_sum, result.bound.complete))
+
+
+def _list_chains_through(
+    lookup: Lookup, own_ids: Collection[str]
+) -> Iterator[tuple[ChainResult, ChainTerm, list[Fraction]]]:
+    """Yield the chains that run through activities, with the first term of theirs, and what is known of the time (ns) before, in and after these."""
     for result in lookup.timing.chains if lookup.timing else ():
         places = [index for index, term in enumerate(result.terms) if term.activity in own_ids]
         if places and result.id in lookup.architecture.chains:
             first, last = places[0], places[-1] + 1
             parts = (result.terms[:first], result.terms[first:last], result.terms[last:])
-            yield result, [sum_fractions(map(sum_known_parts, terms)) for terms in parts]
+            yield result, result.terms[first], [sum_fractions(map(sum_known_parts, terms)) for terms in parts]
 
 
 def list_unjudged_lines(lookup: Lookup, activities: Sequence[Activity]) -> list[tuple[UnjudgedWay, str]]:
@@ -288,7 +298,7 @@ def list_flow_lines(lookup: Lookup, element: Node | Component) -> Iterator[tuple
     ):
         yield name, tuple(_write_line(row, arrow) for row in rows)
     results = _list_chains_through(lookup, {each.id for each in activities})
-    yield "chains", tuple(f"{each.id}: {_read(chain_status.chain_chip(each))}" for each, _ in results)
+    yield "chains", tuple(f"{each.id}: {_read(chain_status.chain_chip(each))}" for each, *_ in results)
     yield "how long it may take", tuple(map(_read, list_time_left(lookup, activities)))
     yield (
         "what no chain says",
@@ -332,7 +342,7 @@ def list_time_left(lookup: Lookup, activities: Sequence[Activity]) -> Iterator[I
         if period:
             most = chain_status.round_duration(period, ">")
             yield (*name, Text(f"less than {most} a run, at {value_format.display_rate(rate)}"))
-        results = [result for result, _ in _list_chains_through(lookup, {activity.id}) if result.deadline]
+        results = [result for result, *_ in _list_chains_through(lookup, {activity.id}) if result.deadline]
         for result in results:
             others = [each for each in result.bound.missing if each != activity.id]
             rest = f", together with {join_words(others)}" if others and result.verdict == "open" else ""
