@@ -181,7 +181,7 @@ _MAX_SHOWN = 12
 _FOLDER_HELP = "give the folder in which the packages lie, `src` as a rule"
 _ASSUMED_DISTRO = "jazzy"
 _NO_LAUNCH = "none"
-_GENERATED_NAMES = ("bringup", "robot")
+_GENERATED_NAMES = frozenset({"bringup", "robot"})
 
 
 @dataclass(frozen=True, slots=True)
@@ -358,7 +358,7 @@ def _choose_entry(launched: LaunchedFiles) -> LaunchedFiles:
 
     def rank(path: Path) -> tuple[bool, int, str]:
         shown = files.show_path(path)
-        return (not any(word in shown for word in _GENERATED_NAMES), -len(started[path][0]), shown)
+        return (_GENERATED_NAMES.isdisjoint(re.split(r"[^a-z0-9]", shown.lower())), -len(started[path][0]), shown)
 
     ranked = sorted(started, key=rank)
     counts = {path: len(started[path][0]) for path in ranked}

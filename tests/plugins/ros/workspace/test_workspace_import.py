@@ -295,6 +295,15 @@ def test_several_launch_files_are_other_robots(workspace: Path, run: Run) -> Non
     assert "there is no such launch file in the workspace" in done.err
 
 
+def test_likeliest_is_what_is_called_a_robot_not_several(workspace: Path, run: Run) -> None:
+    launch = workspace / "src/my_driver/launch/multirobot.launch.xml"
+    launch.parent.mkdir()
+    nodes = "".join(f'<node pkg="my_driver" exec="driver" name="n{number}"/>' for number in range(7))
+    launch.write_text(f"<launch>{nodes}</launch>")
+    said = run("import", "workspace", "src", "-o", "robot").err
+    assert "my_bringup/launch/robot.launch.py (6 nodes), my_driver/launch/multirobot.launch.xml (7 nodes)" in said
+
+
 def test_what_one_of_several_launch_files_starts_is_a_variant(workspace: Path, run: Run) -> None:
     """What all start is the project itself; each launch file is a variant with what it adds."""
     launch = workspace / "src/my_driver/launch/lab.launch.xml"
