@@ -14,8 +14,8 @@ from archgen.timing.run_analysis import analyse_architecture
 from tests.property_sizes import list_seeds
 from tests.running import ROOT
 from tests.simulation.late_robot import analyse, record_witnesses
-from tests.timing.random_systems import architecture
 from tests.timing.random_styles import random_style_text
+from tests.timing.random_systems import architecture
 
 _NEVER_SEEN_LATE = {24}
 """No run of this project takes half of a bound."""

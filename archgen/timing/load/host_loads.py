@@ -30,7 +30,7 @@ from archgen.timing.load.host_verdicts import HostJudge, rate_monotonic_bound
 from archgen.timing.load.level_cascades import EntryWay
 from archgen.timing.load.propagation_state import PropagationState
 from archgen.timing.load.resource_waits import find_use_time, find_users
-from archgen.timing.load.thread_work import OVERLOAD_CAUSE, WorstResponse
+from archgen.timing.load.thread_work import WorstResponse
 from archgen.timing.system.core_placement import ProcessingResource
 from archgen.timing.system.timing_system import Activity, Arc, TimingSystem, best_response
 
