@@ -1,7 +1,8 @@
 """How many bounds are missing where events go to and fro between hosts, by the load of the fullest one: with ways as wholes
 and without them, and how much of what a simulation sees the bounds are.
 
-Usage: python benchmarks/hosts.py [LAST] [pinned] [gates] [ranked], systems 0 to 199 where nothing is said.
+Usage: python benchmarks/hosts.py [LAST] [pinned] [gates] [ranked] [fair], systems 0 to 199 where nothing is said; with `fair` hosts
+share their cores as Linux does it, else in any order.
 """
 
 from __future__ import annotations
@@ -32,12 +33,13 @@ def main() -> None:
     """Print the table as Markdown."""
     numbers = [int(word) for word in sys.argv[1:] if word.isdigit()]
     kinds = {word: True for word in sys.argv[1:] if not word.isdigit()}
+    is_fair = kinds.pop("fair", False)
     (as_wholes,) = (each for each in REFINEMENTS if each.place == "load.transactions:find_transactions")
     missing: dict[str, list[tuple[bool, bool]]] = defaultdict(list)
     ratios: dict[str, list[float]] = defaultdict(list)
     for seed in range(numbers[0] if numbers else 200):
         drawn = draw_system(seed, **kinds)
-        model = architecture(drawn.text)
+        model = architecture(drawn.text, is_fair=is_fair)
         found = analyse_architecture(model).responses
         with without(as_wholes):
             before = analyse_architecture(model).responses

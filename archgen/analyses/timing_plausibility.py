@@ -16,6 +16,7 @@ from archgen.model.port_media import is_physical
 from archgen.model.quantity import Quantity
 from archgen.timing.analysis import Analysis
 from archgen.timing.chains.use_case_times import LIMIT_KEYS
+from archgen.timing.figures.figure_wording import format_duration
 from archgen.timing.system.timing_system import Activity
 
 _NS_PER_SECOND = 10**9
@@ -29,19 +30,25 @@ def long_execution(architecture: Architecture, *, limit: Fraction) -> Iterator[D
         timing.places["response"]: (node, timing)
         for node in architecture.nodes.values()
         for timing in node.timing.values()
-        if timing.response and timing.wcet and timing.response.value < timing.wcet.value
+        if timing.response and timing.wcet and timing.response.value < _sum_held_times(timing)
     }
     for span, (node, timing) in timings.items():
+        keys = "`wcet` and `uses`" if timing.uses else "`wcet`"
         yield Diagnostic(
             "long-execution",
             f"the response of `{node.id}` (`response`, {timing.response}) is below the execution time that it holds "
-            f"(`wcet`, {timing.wcet}): what is declared is taken as it is",
+            f"({keys}, {format_duration(_sum_held_times(timing))}): what is declared is taken as it is",
             span,
             severity=Severity.WARNING,
             labels=(Label(timing.places["wcet"], "its execution time"),),
             help="write the response of the longest run, or leave it out: it is computed then",
             element=node.id,
         )
+
+
+def _sum_held_times(timing: Timing) -> Fraction:
+    """Return how long an activation works and uses resources at most, in ns."""
+    return sum((use.max.value for use in timing.uses.values()), timing.wcet.value if timing.wcet else Fraction(0))
 
 
 def large_jitter(architecture: Architecture, *, limit: Fraction) -> Iterator[Diagnostic]:

@@ -153,8 +153,9 @@ def _begin_callback(run: SimulationRun, now: int, thread: int) -> int:
         # Calls are not counted in a queue: they never replace one another.
         if wire >= 0 and not run.wires.is_request[wire]:
             run.wires.waiting_count[run.wires.queue[wire]] -= 1
+        # What only loads its host is no job of its own: that one has ended by its declared response.
+        threads.job_number[thread] = -1 if wire == LOAD_ONLY else run.activities.started[activity]
         if wire != LOAD_ONLY:
-            threads.job_number[thread] = run.activities.started[activity]
             read_inputs(run, now, activity, job)
     spread = callbacks.time_spread[callback]
     remaining = callbacks.shortest_time[callback]

@@ -37,7 +37,7 @@ class ActivityStates:
         count = len(activities)
         self.period = [planned.period for planned in activities]
         self.jitter = [planned.jitter for planned in activities]
-        self.shortest_time = [planned.bcet for planned in activities]
+        self.shortest_time = [planned.bcet + sum(use[1] for use in planned.uses) for planned in activities]
         self.time_spread = [planned.wcet - planned.bcet for planned in activities]
         self.joint_callback = [planned.joint_callback for planned in activities]
         self.clock_callback = [planned.clock_callback for planned in activities]

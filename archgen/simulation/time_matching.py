@@ -103,7 +103,7 @@ class ApproximateTimeMatcher:
                 self._make_candidate()
             elif end - start < self._candidate_end() - self._candidate_start():
                 self._make_candidate()
-            self._pass_first(first_slot)
+            self.passed[first_slot].append(self.queues[first_slot].popleft())
             if (
                 first_slot == self.pivot_slot
                 or not self._may_improve(end)
@@ -153,9 +153,6 @@ class ApproximateTimeMatcher:
             if positions[first_slot] >= len(self.queues[first_slot]):
                 return True
             positions[first_slot] += 1
-
-    def _pass_first(self, slot: int) -> None:
-        self.passed[slot].append(self.queues[slot].popleft())
 
     def _drop_first(self, slot: int) -> None:
         self.dropped_wires.append(self.queues[slot].popleft()[1])

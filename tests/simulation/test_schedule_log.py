@@ -10,10 +10,12 @@ import pytest
 
 from archgen.simulation.chain_witnesses import find_publish_pauses
 from archgen.simulation.schedule_log import LateSchedule, record_schedule
+from archgen.timing.run_analysis import analyse_architecture
 from tests.property_sizes import list_seeds
 from tests.running import ROOT
 from tests.simulation.late_robot import analyse, record_witnesses
 from tests.timing.random_styles import random_style_text
+from tests.timing.random_systems import architecture
 
 _NEVER_SEEN_LATE = {24}
 """No run of this project takes half of a bound."""
@@ -97,3 +99,25 @@ def test_each_late_run_adds_up(number: int) -> None:
     witnesses = record_witnesses(text)
     assert all(schedule.longest == witness.longest for witness, schedule in witnesses.values())
     assert witnesses or not bounded or seed in _NEVER_SEEN_LATE
+
+
+DECLARED = """groups: {g: {components: {
+  a: {outputs: {o: T}}, b: {inputs: {i: g.a.o}, outputs: {o: {type: T, external: world}}}}}}
+hosts: {pc: {cores: 1}}
+containers: {box: {host: pc, threads: 1}}
+nodes:
+  a: {implements: g.a, container: box, timing: {period: 50 ms, wcet: 20 ms, bcet: 0 ms, response: 20 ms}}
+  b: {implements: g.b, container: box, timing: {wcet: 3 ms, bcet: 3 ms}}
+types: {T: {message: std_msgs/msg/Empty}}
+"""
+
+
+def test_work_that_only_loads_the_host_is_not_on_the_way() -> None:
+    """The job of `a` ends by its declared response; what is done in its thread then had the number of the last job of `b`."""
+    system = analyse_architecture(architecture(DECLARED)).system
+    for seed in range(8):
+        schedule = record_schedule(system, ("a", "b"), seed, 2, {})
+        assert schedule is not None
+        spans = [span for track in schedule.tracks for span in track.spans]
+        assert {span.activity for span in spans} == {"a", "b"}
+        assert {span.activity for span in spans if span.is_on_way} == {"b"}

@@ -5,6 +5,9 @@ from __future__ import annotations
 from dataclasses import replace
 from fractions import Fraction
 
+from archgen.simulation import simulate_system
+from archgen.timing.run_analysis import analyse_system
+from archgen.timing.system.timing_system import ResourceUse, SharedResource
 from tests.simulation.systems import arc, call, event, jobs, system, timed
 
 
@@ -177,6 +180,16 @@ def test_a_declared_response_is_kept_whatever_the_load() -> None:
     activities = [timed("busy", 10, 8, host="h"), timed("declared", 10, 1, host="h", response=5)]
     found = jobs(system(activities), 29)
     assert [end - fired for fired, _, end in found["declared"]] == [5, 5, 5]
+
+
+def test_a_declared_response_is_no_shorter_than_the_execution_and_the_uses_in_it() -> None:
+    """2 ms and a use of 4 ms; of a response below that nothing but itself is left."""
+    gpu = {"gpu": SharedResource("gpu", "h", None)}
+    for response, shortest in ((9, 6), (5, 5)):
+        one = timed("declared", 10, 2, host="h", response=response, uses={"gpu": ResourceUse(4, 4)})
+        of = system([replace(one, bcet=2)], resources=gpu)
+        assert simulate_system(of, 1, 8).activities["declared"].best_response == shortest * 10**6
+        assert analyse_system(of).responses["declared"].best.value == shortest * 10**6
 
 
 def test_what_is_published_once_is_always_there() -> None:

@@ -5,6 +5,8 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import replace
 
+import pytest
+
 from archgen.model.architecture import Architecture
 from archgen.simulation import simulate_system
 from archgen.timing.run_analysis import analyse_architecture
@@ -88,3 +90,37 @@ def test_what_a_thread_held_back_comes_at_once_and_delays_who_is_less_urgent(der
     assert worst(analyse_architecture(derived(HELD_UP))) == {"low": 114, "high": 114, "middle": 114, "other": 114}
     alone = HELD_UP.replace("high, container: box", "high, host: pc")
     assert worst(analyse_architecture(derived(alone)))["other"] == 2
+
+
+GROUP_THAT_WAITS = """
+groups: {g: {components: {a: {}, b: {}, c: {}, u: {}}}}
+nodes:
+  n:
+    implements: [a, b, c]
+    host: pc
+    threads: 2
+  u: {implements: u, host: pc, timing: {period: 100 ms, wcet: 1 ms, bcet: 1 ms, uses: {gpu: 10 ms}}}
+hosts: {pc: {cores: 2, scheduling: fixed_priority}}
+resources: {gpu: {host: pc}}
+"""
+
+
+@pytest.mark.parametrize(("language", "longest"), [("cpp", 18), ("python", 17)])
+def test_who_shares_a_group_with_a_user_of_a_gpu_elsewhere_waits_for_all_that_holds_that_up(
+    derived: Derived, language: str, longest: int
+) -> None:
+    """`a` is pinned and urgent; `b` of its group waits for the GPU, and in C++ for the core of `u`, which no priority is above."""
+    timings = {
+        "a": "{period: 100 ms, wcet: 1 ms, bcet: 1 ms, core: 1, priority: 2}",
+        "b": "{period: 100 ms, wcet: 1 ms, bcet: 1 ms, uses: {gpu: 4 ms}}",
+        "c": "{period: 100 ms, wcet: 1 ms, bcet: 1 ms}",
+    }
+    text = GROUP_THAT_WAITS.replace("threads: 2", f"threads: 2\n    language: {language}")
+    for name, timing in timings.items():
+        text = text.replace(f"{name}: {{}}", f"{name}: {{inputs: {{}}, timing: {timing}}}")
+    found = analyse_architecture(derived(text))
+    assert found.responses["n.a"].worst.value == longest * MS
+    executors = {key: replace(each, usual_order=None) for key, each in found.system.executors.items()}
+    seen = simulate_system(replace(found.system, executors=executors), 1, 12).activities["n.a"].worst_response
+    assert seen is not None
+    assert 16 * MS < seen <= longest * MS

@@ -102,6 +102,15 @@ def test_a_declared_response_says_nothing_where_it_keeps_the_thread_for_more_tim
     assert (wait.value, wait.complete, wait.assumptions) == (None, True, ("overload",))
 
 
+def test_a_declared_response_says_nothing_where_all_is_known_and_nothing_bounds_the_wait() -> None:
+    """Three threads on two cores, each with 60 ms of work every 100 ms: the bound of what may be pending runs away."""
+    work = "behaviour: periodic, period: 100 ms, wcet: 60 ms"
+    nodes = {"a @far": f"{work}", "b @pc": f"{work}, response: 90 ms", "c @pc": work, "d @pc": work}
+    hosts = "hosts: {far: {cores: 1}, pc: {cores: 2}}\nlinks: {lan: {connects: [far, pc], latency: 1 ms}}"
+    wait = analyse_sketch(nodes, "a>b", hosts).storing_waits["b"]
+    assert (wait.value, wait.complete, wait.assumptions) == (None, True, ("diverged",))
+
+
 def test_storing_takes_time_from_everybody_in_the_thread_and_on_the_core() -> None:
     """Messages each 10 ms take 3 ms to be stored: `b` and `c` wait for them, and the host carries 30 % more."""
     nodes = {

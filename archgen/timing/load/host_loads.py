@@ -30,7 +30,7 @@ from archgen.timing.load.host_verdicts import HostJudge, rate_monotonic_bound
 from archgen.timing.load.level_cascades import EntryWay
 from archgen.timing.load.propagation_state import PropagationState
 from archgen.timing.load.resource_waits import find_use_time, find_users
-from archgen.timing.load.thread_work import OVERLOAD_CAUSE, WorstResponse
+from archgen.timing.load.thread_work import WorstResponse
 from archgen.timing.system.core_placement import ProcessingResource
 from archgen.timing.system.timing_system import Activity, Arc, TimingSystem, best_response
 
@@ -221,16 +221,16 @@ def build_storing_waits(state: PropagationState) -> dict[str, TimingValue]:
 
 
 def _build_storing_wait(state: PropagationState, name: str, wait: WorstResponse) -> TimingValue:
-    """Return one reader's wait, with what is missing; a declared response says that what it reads is stored in time.
+    """Return one reader's wait, with what is missing; a declared response stands in for it: what it reads is stored in time.
 
-    It does not where activations of that length keep its thread for more time than there is.
+    It does not where all is known and nothing bounds the wait.
     """
     if wait.value is not None:
         notes = _list_fair_notes(state.system, state.system.activities[name], wait)
         return TimingValue(wait.value * state.system.tick, assumptions=notes) if wait.value else ZERO_VALUE
     if state.responses[name].value is None:
         return ZERO_VALUE  # the response says what is missing: to say it twice makes it no worse
-    if state.system.activities[name].response is not None and wait.cause != OVERLOAD_CAUSE:
+    if state.system.activities[name].response is not None and wait.cause.missing:
         return TimingValue(Fraction(0), assumptions=(f"what {name} reads is stored in time",))
     missing = wait.cause.missing
     return TimingValue(None, not missing, missing, wait.cause.notes)

@@ -78,7 +78,7 @@ def find_joined_resources(
     for steps in steps_of.values():
         _join_steps(neighbours, steps, steps)
     yield from _list_groups(system, triggers, parts, neighbours, _list_uses(system))
-    if use_times := _list_turns(system):
+    if use_times := {name: time for name, time in find_turn_times(system).items() if time is not None}:
         neighbours = {step: [] for step in (*parts, *user_ids) if step in parts or step not in steps_of}
         for steps in steps_of.values():
             _join_steps(neighbours, steps, steps)
@@ -92,11 +92,6 @@ def _list_uses(system: TimingSystem) -> dict[str, int]:
         for activity in system.activities.values()
         if activity.suspends
     }
-
-
-def _list_turns(system: TimingSystem) -> dict[str, int]:
-    """Return how long each activation waits for resources and uses them, where all come in the order of arrival."""
-    return {name: time for name, time in find_turn_times(system).items() if time is not None}
 
 
 def _list_groups(

@@ -326,7 +326,7 @@ def _list_others(
         _build_late_thread(state, unit, models, waiting_ids, is_late=is_late or unit[0] in strangers)
         for unit in other_units
     ]
-    threads = lower_crowded_threads(system, [build_thread(system, resource.units[0], models), *others], models)
+    threads = lower_crowded_threads(system, [build_thread(system, tuple(own_ids), models), *others], models)
     mates = _list_mates(system, resource, threads[1:])
     # Who computes in turn with something less urgent waits for whatever keeps that from its core.
     lowest = min((each.lowest_priority for each in (threads[0], *mates)), key=urgency_of)

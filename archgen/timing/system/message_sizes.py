@@ -136,17 +136,12 @@ SizeQuery = Callable[[str | None, str | None], MessageSize]
 """Maps a message and the conceptual type that it carries (None where not named) to a size."""
 
 
-def compute_message_size(message: str, interfaces: Interfaces) -> MessageSize:
-    """Compute the size of `pkg/msg/Name`, or of a message that ROS 2 generates (`pkg/srv/Name_Request`)."""
-    return _SizeComputer(interfaces).message_size(message)
-
-
 def make_size_query(architecture: Architecture) -> SizeQuery:
     """Return the function that finds a message's size and its reason. A `size` written at the type takes precedence.
 
     Computed sizes are cached in the returned function, so that it may be asked often.
     """
-    computer = _SizeComputer(architecture.interfaces)
+    computer = SizeComputer(architecture.interfaces)
 
     def answer_size(message: str | None, type_: str | None) -> MessageSize:
         mapped = architecture.types.get(type_) if type_ is not None else None
@@ -203,7 +198,7 @@ _MESSAGE_SUFFIXES: dict[tuple[FlowKind, MessageRole], str | None] = {
 """How ROS 2 names the message of each role; None where there is no single one."""
 
 
-class _SizeComputer:
+class SizeComputer:
     """Computes sizes bottom-up from definitions, each message once."""
 
     def __init__(self, interfaces: Interfaces) -> None:
@@ -213,7 +208,7 @@ class _SizeComputer:
         self._shapes: dict[str, WireShape] = {}
 
     def message_size(self, message: str) -> MessageSize:
-        """Return the size of one message, header included."""
+        """Return the size of `pkg/msg/Name`, or of a message that ROS 2 generates (`pkg/srv/Name_Request`), header included."""
         shape = self._shape_of(message)
         if shape.room is None:
             return MessageSize(None, exact=False, why=shape.why)

@@ -197,7 +197,7 @@ def find_core_sets(system: TimingSystem, members: Iterable[Activity]) -> dict[Th
         if serial_process is not None:  # only one of its threads computes: where the first pinned member is
             first_set = next((core_set for core_set in names_by_set if core_set), ())
             serial_sets[serial_process] = serial_sets.get(serial_process, ()) or first_set
-        if len(names_by_set) == 1 or find_thread_count(system, unit[0]) == 1:
+        if len(names_by_set) == 1 or serial_process is not None or find_thread_count(system, unit[0]) == 1:
             core_sets[unit] = next((core_set for core_set in names_by_set if core_set), ())
         else:
             core_sets |= {tuple(names): core_set for core_set, names in names_by_set.items()}

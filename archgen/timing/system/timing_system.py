@@ -305,8 +305,12 @@ def is_selective_arc(system: TimingSystem, arc: Arc) -> bool:
 
 
 def best_response(activity: Activity) -> int:
-    """Return how long an activation takes at least, in ticks; what nobody wrote counts as 0."""
-    return (activity.bcet or 0) + sum(use.best for use in activity.uses.values())
+    """Return how long an activation takes at least, in ticks; what nobody wrote counts as 0.
+
+    A declared response is taken as it is, also where it is shorter than what it holds.
+    """
+    shortest = (activity.bcet or 0) + sum(use.best for use in activity.uses.values())
+    return shortest if activity.response is None else min(shortest, activity.response)
 
 
 def calls_per_activation(caller: Activity, request: Arc) -> Fraction:

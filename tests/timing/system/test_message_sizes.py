@@ -91,7 +91,7 @@ def sent(store: Store, name: str, *, ros1: bool) -> int:
 
 def compare(held: Interfaces, store: Store, *, ros1: bool) -> tuple[dict[str, int | None], dict[str, int]]:
     names = [name for name in store.fielddefs if fixed(store, name)]
-    ours = {name: message_sizes.compute_message_size(name, held).bytes for name in names}
+    ours = {name: message_sizes.SizeComputer(held).message_size(name).bytes for name in names}
     return ours, {name: sent(store, name, ros1=ros1) for name in names}
 
 
@@ -117,7 +117,9 @@ def test_the_definitions_that_ship_give_the_same(distro: str) -> None:
 def test_every_other_message_is_unknown_or_bounded(which: Stores) -> None:
     store, distro = get_typestore(which), which.value.partition("_")[2]
     held = known(store, distro)
-    assert not [n for n in store.fielddefs if not fixed(store, n) and message_sizes.compute_message_size(n, held).exact]
+    assert not [
+        n for n in store.fielddefs if not fixed(store, n) and message_sizes.SizeComputer(held).message_size(n).exact
+    ]
 
 
 def defined(text: str, distro: str = "jazzy") -> Interfaces:
@@ -160,13 +162,13 @@ def defined(text: str, distro: str = "jazzy") -> Interfaces:
     ],
 )
 def test_sizes_by_hand(fields: str, bytes_: int | None, *, exact: bool, why: str) -> None:
-    found = message_sizes.compute_message_size("demo_msgs/msg/A", defined(f"demo_msgs/msg/A: {fields}"))
+    found = message_sizes.SizeComputer(defined(f"demo_msgs/msg/A: {fields}")).message_size("demo_msgs/msg/A")
     assert found == message_sizes.MessageSize(bytes_, exact, why)
 
 
 def test_ros_1_has_no_header_and_no_gaps() -> None:
     held = defined("demo_msgs/msg/A: uint8 a; float64 b; time c; std_msgs/Empty d", "noetic")
-    assert message_sizes.compute_message_size("demo_msgs/msg/A", held).bytes == 17
+    assert message_sizes.SizeComputer(held).message_size("demo_msgs/msg/A").bytes == 17
 
 
 def test_services_and_actions_are_asked_part_by_part() -> None:
@@ -177,7 +179,7 @@ def test_services_and_actions_are_asked_part_by_part() -> None:
         """
     )
     found = {
-        name: message_sizes.compute_message_size(f"demo_msgs/{name}", held).bytes
+        name: message_sizes.SizeComputer(held).message_size(f"demo_msgs/{name}").bytes
         for name in (
             "srv/Weigh_Request",
             "srv/Weigh_Response",
@@ -192,7 +194,7 @@ def test_services_and_actions_are_asked_part_by_part() -> None:
     }
     assert list(found.values()) == [5, 12, None, 8, 24, 16, 20, 6, 24]
     assert (
-        message_sizes.compute_message_size("demo_msgs/srv/Weigh", held).why
+        message_sizes.SizeComputer(held).message_size("demo_msgs/srv/Weigh").why
         == "`demo_msgs/srv/Weigh` is several messages"
     )
 
@@ -200,8 +202,8 @@ def test_services_and_actions_are_asked_part_by_part() -> None:
 def test_definitions_may_be_nested_deeply_and_grow_without_bound() -> None:
     lines = [f"demo_msgs/msg/A{n}: demo_msgs/A{n + 1}[9] a" for n in range(3000)]
     held = defined("\n".join([*lines, "demo_msgs/msg/A3000: uint8 a"]))
-    assert message_sizes.compute_message_size("demo_msgs/msg/A2990", held).bytes == 4 + 9**10
-    assert message_sizes.compute_message_size("demo_msgs/msg/A0", held).bytes is None
+    assert message_sizes.SizeComputer(held).message_size("demo_msgs/msg/A2990").bytes == 4 + 9**10
+    assert message_sizes.SizeComputer(held).message_size("demo_msgs/msg/A0").bytes is None
 
 
 def test_what_passes_between_writers_and_readers() -> None:
