@@ -274,7 +274,7 @@ class ProgramNames:
             for part in ACTION_PARTS[self._ros] if flow == "action" else ("",):
                 remaps.setdefault(f"{own_name}{part}", f"{name}{part}")
         others = list_written_remaps(node)
-        if node.id in self._programs:
+        if others and node.id in self._programs:
             folded = [each for each in self._endpoints.get(node.id, ()) if each.port or each.written]
             spoken.update(name for each in folded for name in (each.name, each.program_name))
             spoken |= {f"{name}{part}" for name in spoken for part in ACTION_PARTS[self._ros]}

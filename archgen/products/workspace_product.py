@@ -16,10 +16,8 @@ from archgen.emit.workspace.run_record import find_former_project, read_other_re
 from archgen.emit.workspace.workspace_plan import STALE, FileStep, KnownFits, UserChoices, WorkspacePlan, plan_workspace
 from archgen.model.architecture import ProjectInfo
 from archgen.pipeline import CheckedProject
-from archgen.products.backend_choice import choose_backends, raise_problems
-from archgen.products.backend_products import make_generation_context
-from archgen.products.output_options import OutputOptions
-from archgen.products.product_writing import refuse_leaving_links
+from archgen.products.backend_choice import choose_backends, make_generation_context, raise_problems
+from archgen.products.output_options import OutputOptions, refuse_leaving_links
 from archgen.products.report_cache import cache_folder
 from archgen.products.trusted_backends import refuse_untrusted_pass
 from archgen.views.generation import find_view_maker, make_generation_views

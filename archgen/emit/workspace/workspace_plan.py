@@ -7,7 +7,6 @@ import re
 import sys
 from collections import defaultdict
 from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, field, replace
 from functools import cached_property
 from pathlib import Path
 from typing import Literal
@@ -24,6 +23,7 @@ from archgen.emit.workspace.run_record import (
     join_digests,
     split_digests,
 )
+from archgen.frozen import dataclass, field, replace
 
 
 class KnownFits:
@@ -111,7 +111,7 @@ class WorkspacePlan:
     intent: RunRecord
     """What is true while files are being moved: of each the old digest and the new one are known."""
     record: RunRecord
-    """What is true afterwards."""
+    """What is true afterwards, and whether the workspace says so already."""
 
     def count(self, verb: FileVerb) -> int:
         """Return how many files something is done with."""
@@ -150,7 +150,7 @@ def plan_workspace(
     return planner.finish()
 
 
-@dataclass
+@dataclass()
 class _Planner:
     """Collects the parts of a plan."""
 
@@ -388,7 +388,7 @@ class _Planner:
             tuple(self.removals),
             tuple(self.vanished),
             RunRecord(self.old_record.backend, intended_files),
-            RunRecord(self.old_record.backend, self.entries),
+            RunRecord(self.old_record.backend, self.entries, self.old_record.is_on_disk and self.entries == old_files),
         )
 
 
