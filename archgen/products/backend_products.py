@@ -7,7 +7,6 @@ from collections.abc import Callable, Mapping
 from archgen.diagnostics import Diagnostic
 from archgen.emit import file_tree
 from archgen.emit.backend_manifests import Backend
-from archgen.pipeline import CheckedProject
 from archgen.products.backend_choice import make_generation_context, raise_problems
 from archgen.products.product_inputs import FinishProduct, MadeProduct, Product, ProductInputs
 from archgen.views.generation import make_generation_views
