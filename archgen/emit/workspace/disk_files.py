@@ -173,7 +173,7 @@ class DiskReader:
         if not stat.S_ISREG(status.st_mode) or status.st_size > _MAX_TEXT_BYTES:
             os.close(descriptor)
             return status, None
-        with open(descriptor, "rb", buffering=0) as stream:
+        with open(descriptor, "rb", buffering=0) as stream:  # noqa: PTH123 - as above
             return status, stream.read()
 
     def read_data(self, path: str) -> bytes:
