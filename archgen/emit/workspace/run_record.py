@@ -194,6 +194,12 @@ def read_other_records(workspace: Path, backend: str) -> Mapping[str, str]:
     }
 
 
+def read_other_own_files(workspace: Path, backend: str) -> Mapping[str, RecordedFile]:
+    """Return the files of the user's own that other backends made in a workspace."""
+    others = (read_run_record(workspace, name) for name in list_recorded_backends(workspace) if name != backend)
+    return {path: file for record in others for path, file in record.files.items() if file.once}
+
+
 def list_recorded_backends(workspace: Path) -> list[str]:
     """Return the backends that have a record in a workspace."""
     folder = workspace / RECORD_FOLDER
