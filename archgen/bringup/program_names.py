@@ -220,6 +220,18 @@ def choose_own_names(
     }
 
 
+ProgramPorts = tuple[Mapping[tuple[str, str, str], Sequence[Endpoint]], Mapping[tuple[str, str, str], str]]
+"""The ports of a program by use, flow and name, with the ends of its nodes there, and what it calls each of them."""
+
+
+def name_ports(
+    architecture: Architecture, nodes: Sequence[Node], endpoints: Mapping[str, Sequence[Endpoint]]
+) -> ProgramPorts:
+    """Return the ports of the nodes of one program."""
+    groups = group_endpoints(nodes, endpoints)
+    return groups, choose_own_names(architecture, groups)
+
+
 def find_common_message(endpoints: Sequence[Endpoint]) -> str | None:
     """Return the message that nodes of one program have at a port; None where they differ, or nobody says it."""
     messages = {each.message for each in endpoints}
@@ -230,24 +242,31 @@ class ProgramNames:
     """Knows which names of a program become others at each of its nodes: of its ports, as generated or as it says, and others."""
 
     def __init__(self, architecture: Architecture, ros: int) -> None:
-        self._ros, self._distro = ros, architecture.distro
+        self._ros, self._distro, self._architecture = ros, architecture.distro, architecture
         self._endpoints = index_endpoints(architecture)
         self._names: dict[str, list[tuple[str, str, str]]] = {}
+        self._ports: dict[tuple[str, ...], ProgramPorts] = {}
         generated_nodes = list_generated_nodes(architecture)
         self._programs = {each.id: name_node_program(architecture, each, ros) for each in generated_nodes}
         for nodes in group_by_program(architecture, generated_nodes).values():
-            self._name_ports(architecture, nodes)
+            self._name_ports(nodes)
 
-    def _name_ports(self, architecture: Architecture, nodes: Sequence[Node]) -> None:
+    def _name_ports(self, nodes: Sequence[Node]) -> None:
         for node in nodes:
             self._names[node.id] = []
-        groups = group_endpoints(nodes, self._endpoints)
-        for place, own_name in choose_own_names(architecture, groups).items():
+        ports = groups, own_names = name_ports(self._architecture, nodes, self._endpoints)
+        self._ports[tuple(each.id for each in nodes)] = ports
+        for place, own_name in own_names.items():
             if find_common_message(groups[place]) is None:
                 continue
             for endpoint in groups[place]:
                 if endpoint.name is not None:
                     self._names[endpoint.node].append((place[1], own_name, endpoint.name))
+
+    def find_ports(self, nodes: Sequence[Node]) -> ProgramPorts:
+        """Return the ports of the nodes of one program."""
+        known = self._ports.get(tuple(each.id for each in nodes))
+        return known or name_ports(self._architecture, nodes, self._endpoints)
 
     def find_program(self, node: Node) -> NodeProgram:
         """Return what runs a node: what it says, completed by what generators make for it."""
@@ -274,7 +293,7 @@ class ProgramNames:
             for part in ACTION_PARTS[self._ros] if flow == "action" else ("",):
                 remaps.setdefault(f"{own_name}{part}", f"{name}{part}")
         others = list_written_remaps(node)
-        if node.id in self._programs:
+        if others and node.id in self._programs:
             folded = [each for each in self._endpoints.get(node.id, ()) if each.port or each.written]
             spoken.update(name for each in folded for name in (each.name, each.program_name))
             spoken |= {f"{name}{part}" for name in spoken for part in ACTION_PARTS[self._ros]}

@@ -60,6 +60,8 @@ _NOTED_FUNCTIONS: tuple[tuple[Any, str, str], ...] = (
 
 Folders may be made and removed: what is made in them is opened to be written.
 """
+_FACTS_OF_FILES = 7
+"""So much is said of a file before the date of its last change."""
 _SAFE_TEXT = re.compile(r"(?:[^\x00-\x08\x0b-\x1f\x7f-\x9f]|\x1b\[[0-9;]*+m)*+")
 
 
@@ -167,21 +169,29 @@ class RunKeeper:
             else:
                 question = (kind if options.get("follow_symlinks", True) else "lstat", os.fsdecode(path or "."))
                 if question not in self._asked:
-                    self._asked[question] = _ask_early(*question)
+                    self._asked[question] = answer = _ask_early(*question)
+                    *facts, changed = answer.split(" ")
+                    if kind != "rights" and len(facts) == _FACTS_OF_FILES and int(changed) >= self._settled_before:
+                        # It cannot be kept: there is nothing more to note.
+                        self._is_keepable = self._is_noting = False
             return function(path, *arguments, **options)
 
         return ask
 
     def _settle_answer(self, kind: str, path: str) -> str:
         """Return what the disk answers. Raise _UnkeptError where it may have answered otherwise during the run."""
-        answer = _ask_disk(kind, path)
+        try:
+            status = _LSTAT(path)
+        except OSError:
+            status = None
+        is_link = status is not None and stat.S_ISLNK(status.st_mode)
+        answer = _ask_disk(kind, path, None if is_link else status)
         early_answer = self._asked.get((kind, path))
         if early_answer and early_answer != (_ask_early(kind, path) if kind == "names" else answer):
             raise _UnkeptError
         try:
-            status = _LSTAT(path)
-            is_settled = self._is_settled(status, kind)
-            if is_settled and stat.S_ISLNK(status.st_mode):
+            is_settled = status is None or self._is_settled(status, kind)
+            if is_settled and is_link:
                 is_settled = self._is_settled(_STAT(path), kind)
         except OSError:
             return answer
@@ -260,13 +270,13 @@ def _ask_early(kind: str, path: str) -> str:
     return _ask_disk("bytes" if kind == "names" else kind, path)
 
 
-def _ask_disk(kind: str, path: str) -> str:
-    """Return what the disk answers, as short text."""
+def _ask_disk(kind: str, path: str, known_status: os.stat_result | None = None) -> str:
+    """Return what the disk answers, as short text. What is known already of a file that is no link is not asked again."""
     try:
         if kind == "names":
             with _SCANDIR(path) as entries:
                 return _digest(repr(sorted(map(_describe_entry, entries))))
-        status = _LSTAT(path) if kind == "lstat" else _STAT(path)
+        status = known_status or (_LSTAT(path) if kind == "lstat" else _STAT(path))
         identity = f"{status.st_mode} {status.st_uid} {status.st_gid} {status.st_dev} {status.st_ino}"
         if stat.S_ISLNK(status.st_mode):
             return f"{identity} {_READLINK(path)}"

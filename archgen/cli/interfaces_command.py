@@ -10,7 +10,7 @@ import click
 
 from archgen.cli import command_support, shared_options
 from archgen.diagnostics import make_visible
-from archgen.products.output_options import OutputOptions
+from archgen.products.output_options import OutputOptions, refuse_leaving_links
 
 if TYPE_CHECKING:
     from archgen.pipeline import CheckedProject
@@ -78,7 +78,7 @@ def command(  # noqa: PLR0913 - one for each option
     requirements, open points, and who serves and who reads it. `archgen interfaces --between certh sssa -o certh-sssa.docx`
     """
     from archgen.cli import measured_recordings
-    from archgen.products import agreement_documents, product_writing
+    from archgen.products import agreement_documents
 
     if since and signed:
         raise click.UsageError("--signed marks what changed as --since does: give one of them")
@@ -107,7 +107,7 @@ def command(  # noqa: PLR0913 - one for each option
             _exit_by_terms(checked_project, agreement, earlier_version if signed else None)
         endings = {"markdown": "md", "html": "html", "docx": "docx", "json": "json"}
         target = output or checked_project.output_folder / "interfaces" / f"{pair[0]}-{pair[1]}.{endings[form]}"
-        product_writing.refuse_leaving_links(checked_project, target)
+        refuse_leaving_links(checked_project, target)
         agreement_documents.write_agreement(agreement, form, target, output_options)
     command_support.print_written(
         target, f"{agreement.interface_count} interfaces" if agreement.interface_count != 1 else "1 interface"

@@ -8,7 +8,7 @@ import click
 
 from archgen.cli import command_support, shared_options
 from archgen.diagnostics import make_visible
-from archgen.products.output_options import OutputOptions
+from archgen.products.output_options import OutputOptions, refuse_leaving_links
 
 
 @click.command("sign")
@@ -49,7 +49,7 @@ def command(  # noqa: PLR0913 - one for each option
     from datetime import datetime
 
     from archgen.git import GitError
-    from archgen.products import agreement_documents, agreement_signing, product_writing
+    from archgen.products import agreement_documents, agreement_signing
 
     form = command_support.choose_format(None, output, agreement_documents.FORMAT_BY_ENDING, "docx")
     checked_project = command_support.check_before_writing(project, keep_going=False)
@@ -66,7 +66,7 @@ def command(  # noqa: PLR0913 - one for each option
         )
         target = output or checked_project.output_folder / "interfaces" / f"{prepared.agreement.id}.{form}"
         with command_support.explain_write_errors():
-            product_writing.refuse_leaving_links(checked_project, target)
+            refuse_leaving_links(checked_project, target)
             agreement_documents.write_agreement(agreement, form, target, options)
             agreement_signing.record_signature(checked_project, prepared)
     command_support.print_written(target)

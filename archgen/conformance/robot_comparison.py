@@ -208,15 +208,24 @@ class _Comparer:
     def _pair_renamed(
         self, lacking: Sequence[Node], strange: Sequence[ObservedNode]
     ) -> Iterator[tuple[Node, ObservedNode]]:
-        """Yield nodes that are there under another name: known by what they use."""
+        """Yield nodes that are there under another name: known by what they use, as it is called there.
+
+        One that keeps its name in another namespace takes what it calls relative to it along.
+        """
         left = list(strange)
         for node in lacking:
             designed = self._endpoints.list_uses(node.id)
-            if len(designed) < _FEWEST_USES:
-                continue
             for observed in left:
+                namespace, _, name = observed.full_name.rpartition("/")
                 used = self._endpoints.list_observed_uses(observed.full_name)
-                if used and len(designed & used) >= _ALIKE_SHARE * len(designed | used):
+                is_moved = name == node.name
+                same = sum(
+                    (use, each) in used or (is_moved and (use, _move_name(each, node.namespace, namespace)) in used)
+                    for use, each in designed
+                )
+                if len(designed) < (1 if is_moved else _FEWEST_USES):
+                    continue
+                if used and same >= _ALIKE_SHARE * (len(designed) + len(used) - same):
                     left.remove(observed)
                     yield node, observed
                     break
@@ -318,6 +327,12 @@ class _Comparer:
             place = first_written_span(designed.at, node.at)
             labels = (Label(observed.at, "seen here"),)
             yield Diagnostic("other-parameter", message, place, None, labels, help_line, node.id)
+
+
+def _move_name(name: str | None, old_namespace: str, new_namespace: str) -> str | None:
+    """Return what a name becomes whose node moves, where it stands in the namespace of that."""
+    old = old_namespace.rstrip("/")
+    return f"{new_namespace}{name.removeprefix(old)}" if name and name.startswith(f"{old}/") else name
 
 
 def _fold_host(name: str) -> str:

@@ -1,15 +1,17 @@
-"""Which text backend a name means, and which verb makes it. What products are made from is not loaded for that."""
+"""Which text backend a name means, which verb makes it, and what it is made from. What pictures and documents take is not loaded for that."""
 
 from __future__ import annotations
 
 from collections.abc import Collection, Mapping, Sequence
-from typing import Literal
+from typing import Any, Literal
 
 from archgen.diagnostics import Diagnostic, did_you_mean
 from archgen.emit import backend_manifests, file_tree
 from archgen.emit.backend_manifests import CALLED_EMITTERS, Backend
 from archgen.pipeline import CheckedProject
+from archgen.products.output_options import OutputOptions
 from archgen.products.trusted_backends import TrustedRevision, refuse_untrusted
+from archgen.views.generation.generation_context import GenerationContext
 
 BackendTarget = Literal["documents", "workspace", "file"]
 _COMMANDS: Mapping[BackendTarget, str] = {
@@ -86,3 +88,26 @@ def raise_problems(problems: Sequence[Diagnostic]) -> None:
     if problems:
         message = "; ".join(f"{problem.span}: {problem.message}" for problem in problems)
         raise file_tree.OutputError(message, problems[0].help)
+
+
+def make_generation_context(
+    checked_project: CheckedProject, options: OutputOptions, backend: Backend
+) -> GenerationContext:
+    """Return the context for a backend; nothing is packed before a view asks for it."""
+
+    def pack() -> Mapping[str, Any]:
+        from archgen.checking.checked_packing import pack_checked_project
+
+        return pack_checked_project(checked_project).data
+
+    selection = options.selection
+    return GenerationContext(
+        checked_project.architecture,
+        selection.components if selection else None,
+        selection.nodes if selection else None,
+        options=backend.options,
+        backend=backend.id,
+        level=options.level or "implementation",
+        types_only=options.types_only,
+        pack_project=pack,
+    )

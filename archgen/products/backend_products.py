@@ -3,14 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from typing import Any
 
 from archgen.diagnostics import Diagnostic
 from archgen.emit import file_tree
 from archgen.emit.backend_manifests import Backend
-from archgen.pipeline import CheckedProject
-from archgen.products.backend_choice import raise_problems
-from archgen.products.output_options import OutputOptions
+from archgen.products.backend_choice import make_generation_context, raise_problems
 from archgen.products.product_inputs import FinishProduct, MadeProduct, Product, ProductInputs
 from archgen.views.generation import make_generation_views
 from archgen.views.generation.generation_context import GenerationContext
@@ -71,26 +68,3 @@ def make_backend_views(
     views = {name: shapes[name]() for name in backend.views if name in shapes}
     generated_views, findings = make_generation_views(context, backend.views)
     return {**views, **generated_views}, findings
-
-
-def make_generation_context(
-    checked_project: CheckedProject, options: OutputOptions, backend: Backend
-) -> GenerationContext:
-    """Return the context for a backend; nothing is packed before a view asks for it."""
-
-    def pack() -> Mapping[str, Any]:
-        from archgen.checking.checked_packing import pack_checked_project
-
-        return pack_checked_project(checked_project).data
-
-    selection = options.selection
-    return GenerationContext(
-        checked_project.architecture,
-        selection.components if selection else None,
-        selection.nodes if selection else None,
-        options=backend.options,
-        backend=backend.id,
-        level=options.level or "implementation",
-        types_only=options.types_only,
-        pack_project=pack,
-    )

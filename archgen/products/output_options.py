@@ -1,13 +1,17 @@
-"""What users may choose about outputs: a part, a level of detail, the printed revision."""
+"""What users may choose about outputs: a part, a level of detail, the printed revision, and the place, within limits."""
 
 from __future__ import annotations
 
+import os
 from collections.abc import Callable
+from pathlib import Path
 from typing import TYPE_CHECKING
 
+from archgen.emit.file_tree import OutputError
 from archgen.frozen import dataclass
 
 if TYPE_CHECKING:
+    from archgen.checking.checked_project import CheckedProject
     from archgen.model.selector_evaluation import Selection
     from archgen.products.trusted_backends import TrustedRevision
     from archgen.views.changes.site_changes import SiteChanges
@@ -45,3 +49,16 @@ class OutputOptions:
     """What changed since an earlier version, where site and report are to show it."""
     document: ReportDocument = "deliverable"
     """Which of the report's documents is written."""
+
+
+def refuse_leaving_links(checked_project: CheckedProject, target: Path) -> None:
+    """Refuse a place in the project's own output folder that a link leads out of the project.
+
+    A stranger's branch can hold a link called `archgen-out`. A folder that somebody names with `-o` is where he wants it.
+    """
+    own_folder = Path(os.path.normpath(checked_project.output_folder.absolute()))
+    # The last name as well, where it is a link: what is written would go through it.
+    leads_out = not Path(os.path.realpath(target)).is_relative_to(os.path.realpath(checked_project.root))
+    if leads_out and Path(os.path.normpath(target.absolute())).is_relative_to(own_folder):
+        msg = f"{target} is reached by a link that leads out of the project"
+        raise OutputError(msg, "take the link away, or name the folder with `-o`")

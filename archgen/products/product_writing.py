@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import fnmatch
-import os
 from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -13,7 +12,7 @@ from archgen.emit.picture import Picture
 from archgen.frozen import dataclass, field
 from archgen.pipeline import CheckedProject
 from archgen.products import report_cache
-from archgen.products.output_options import DrawingProgress, OutputOptions
+from archgen.products.output_options import DrawingProgress, OutputOptions, refuse_leaving_links
 from archgen.products.product_inputs import FinishProduct, MadeProduct, Product, ProductInputs
 from archgen.regular_files import holds_bytes
 from archgen.views.picture_shapes import Drawing
@@ -197,16 +196,3 @@ def _is_same_file(first: Path, second: Path) -> bool:
         return first.samefile(second)
     except OSError:  # one of them is gone, or cannot be looked at
         return False
-
-
-def refuse_leaving_links(checked_project: CheckedProject, target: Path) -> None:
-    """Refuse a place in the project's own output folder that a link leads out of the project.
-
-    A stranger's branch can hold a link called `archgen-out`. A folder that somebody names with `-o` is where he wants it.
-    """
-    own_folder = Path(os.path.normpath(checked_project.output_folder.absolute()))
-    # The last name as well, where it is a link: what is written would go through it.
-    leads_out = not Path(os.path.realpath(target)).is_relative_to(os.path.realpath(checked_project.root))
-    if leads_out and Path(os.path.normpath(target.absolute())).is_relative_to(own_folder):
-        msg = f"{target} is reached by a link that leads out of the project"
-        raise file_tree.OutputError(msg, "take the link away, or name the folder with `-o`")

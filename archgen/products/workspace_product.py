@@ -12,14 +12,18 @@ from archgen.emit.backend_manifests import Backend
 from archgen.emit.file_tree import OutputError, refuse_file
 from archgen.emit.workspace import workspace_writing
 from archgen.emit.workspace.disk_files import DiskReader, GeneratedFile, fold_file_path
-from archgen.emit.workspace.run_record import find_former_project, read_other_records, read_run_record, take_over_runs
+from archgen.emit.workspace.run_record import (
+    find_former_project,
+    read_other_own_files,
+    read_other_records,
+    read_run_record,
+    take_over_runs,
+)
 from archgen.emit.workspace.workspace_plan import STALE, FileStep, KnownFits, UserChoices, WorkspacePlan, plan_workspace
 from archgen.model.architecture import ProjectInfo
 from archgen.pipeline import CheckedProject
-from archgen.products.backend_choice import choose_backends, raise_problems
-from archgen.products.backend_products import make_generation_context
-from archgen.products.output_options import OutputOptions
-from archgen.products.product_writing import refuse_leaving_links
+from archgen.products.backend_choice import choose_backends, make_generation_context, raise_problems
+from archgen.products.output_options import OutputOptions, refuse_leaving_links
 from archgen.products.report_cache import cache_folder
 from archgen.products.trusted_backends import refuse_untrusted_pass
 from archgen.views.generation import find_view_maker, make_generation_views
@@ -45,6 +49,8 @@ class WorkspaceRequest:
     """Files that other backends take away before this one is made."""
     only_clears: bool = False
     """Whether only what is no longer made is taken away."""
+    waits_with_orphans: bool = False
+    """Whether nothing is done where own code loses its place: another backend may make the next one for it first."""
     former_project: str = ""
     """The id that the project had before, or its own one where what another project has here is none of its."""
 
@@ -58,7 +64,7 @@ class WorkspaceResult:
     """None where nothing is written, since the findings say that it would be wrong."""
     findings: tuple[Diagnostic, ...] = ()
     is_in_the_way: bool = False
-    """Whether another backend has files where this one makes some."""
+    """Whether another backend has files where this one makes some, or is to make what takes the place of own code."""
 
     @property
     def stale_steps(self) -> tuple[FileStep, ...]:
@@ -107,6 +113,8 @@ def write_workspace(
         plan = _write_files(files, backend, folder, run, request)
     except _FormerProjectError as error:
         return WorkspaceResult(folder, None, (*findings, _ask_for_former_id(project, error.former_project, folder)))
+    if request.waits_with_orphans and plan.has_orphans:
+        return WorkspaceResult(folder, None, findings, is_in_the_way=True)
     return WorkspaceResult(folder, plan, findings)
 
 
@@ -124,6 +132,7 @@ def write_workspaces(
     while waiting:
         name = waiting.pop(0)
         request = replace(requests[name], leaving=frozenset(leaving))
+        request = replace(request, waits_with_orphans=bool(waiting) and name not in has_cleared)
         result = write_workspace(checked_project, options, name, target, request)
         if result.is_in_the_way and waiting and name not in has_waited:
             waiting.append(name)
@@ -132,7 +141,8 @@ def write_workspaces(
         if result.is_in_the_way and name not in has_cleared:
             waiting.append(name)
             has_cleared.add(name)
-            cleared = write_workspace(checked_project, options, name, target, replace(request, only_clears=True))
+            request = replace(request, only_clears=True, waits_with_orphans=False)
+            cleared = write_workspace(checked_project, options, name, target, request)
             if not (cleared.plan and cleared.plan.removals):
                 continue
             # What could not be generated is said by the run that generates.
@@ -296,7 +306,8 @@ def _write_files(
             return _plan_files(files, backend, folder, run, request)
         with workspace_writing.lock_workspace(folder):
             plan = _plan_files(files, backend, folder, run, request)
-            workspace_writing.carry_out(plan, folder)
+            if not (request.waits_with_orphans and plan.has_orphans):
+                workspace_writing.carry_out(plan, folder)
             return plan
     except OSError as error:
         msg = f"cannot write {error.filename or folder}: {error.strerror or error}"
@@ -320,6 +331,7 @@ def _plan_files(
         request.removes_unmade,
         request.only_clears,
         fits,
+        lambda: read_other_own_files(folder, backend.id),
     )
     plan = plan_workspace(record, run, files, DiskReader(folder, request.leaving), choices)
     fits.keep()

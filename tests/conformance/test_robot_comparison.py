@@ -441,3 +441,15 @@ def test_what_is_so_of_one_instance_is_not_to_be_written_at_the_type_of_all(tmp_
         assert of_leg.help == text + shared
         # An end that nobody wrote is told at its node, not in what was seen.
         assert {each.span.file for each in findings} == {"archgen.yaml"}
+
+
+def test_a_node_that_moved_to_another_namespace_is_the_same_with_what_it_calls_relative_to_it(
+    rover: CheckedProject, tmp_path: Path
+) -> None:
+    moved = check_rover(tmp_path, ROVER.replace("  base: {implements", "  base: {namespace: /robot, implements"))
+    findings = compare_with_graph(rover, print_graph(moved.architecture)).reported.findings
+    words = "`/base` is called `/robot/base` on the robot: what it uses is the same"
+    assert [(each.rule, each.message) for each in findings if "/base" in each.message] == [("other-name", words)]
+    (finding,) = [each for each in findings if each.rule == "other-name"]
+    assert finding.help is not None
+    assert "`namespace: /robot`" in finding.help

@@ -6,7 +6,7 @@ from pathlib import Path
 
 from archgen.emit.backend_manifests import find_backends
 from archgen.pipeline import check_project
-from archgen.products.backend_products import make_generation_context
+from archgen.products.backend_choice import make_generation_context
 from archgen.products.output_options import OutputOptions
 from archgen.products.project_views import select_elements
 

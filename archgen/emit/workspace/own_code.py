@@ -348,12 +348,16 @@ class _PythonJudge:
 
     def _find_class(self, use: OwnField) -> tuple[str, tuple[str, ...]]:
         """Return the class that a chain of fields begins with, and the chain: that of an argument is what the node calls with."""
-        if use.root.endswith("()"):  # what a call of the node answers with
-            service = _Meaning.read(self._known.get(use.root[:-2], "")).message
-            return (f"{service}/Response" if service else ""), use.chain
+        called, _, part = use.root.removesuffix("()").partition(":")
+        if part or called != use.root:  # what a call of the node answers with
+            answered = _Meaning.read(self._known.get(called, "")).message
+            if called.startswith("call_"):
+                return f"{answered}/Response", use.chain
+            # A handle has fields of its own; result and feedback stand in a message that says whose they are.
+            return f"{answered}/{part}", use.chain[1:] if part and use.chain[0] == part.lower() else ()
         method, _, number = use.root.partition("#")
         message = _Meaning.read(self._known.get(method, "")).message
-        if not number or not message:
+        if not (number and message):
             return ("" if number else use.root), use.chain
         if method.startswith("serve_"):
             return f"{message}/{'Response' if int(number) else 'Request'}", use.chain
@@ -407,8 +411,7 @@ def _judge_words(text: str, contract: Contract, recorded: Mapping[str, str]) -> 
         start = found.start()
         places.setdefault(found[0], (line, found.start() - code.rfind("\n", 0, found.start())))
     lacking = [each for each in contract.expects if each not in places and not _holds_phrase(text, each)]
-    findings: list[CodeFinding] = []
-    meanings = dict(contract.names)
+    findings, meanings = list[CodeFinding](), dict(contract.names)
     successors: set[str] = set()
     changed = [
         *_find_changed_messages(code, contract, recorded),
@@ -448,13 +451,10 @@ def _find_changed_messages(
         if name.startswith("'") or not (old and new) or old == new:
             continue
         old_class = re.escape(old.replace("/", "::"))
-        if name in contract.expects:
-            found = re.search(rf"\b{name}\s*\([^{{;]{{0,1000}}?\b{old_class}\b", code)
-        elif old not in now.values():
-            found = re.search(rf"\b{old_class}\b", code)
-        else:
-            found = None  # another port still has it
-        if found:
+        if name not in contract.expects and old in now.values():
+            continue  # another port still has it
+        where = rf"\b{name}\s*\([^{{;]{{0,1000}}?" if name in contract.expects else ""
+        if found := re.search(rf"{where}\b{old_class}\b", code):
             yield name, f"`{name}` has `{new}` now, and not `{old}`", found.start()
 
 

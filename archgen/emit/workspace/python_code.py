@@ -19,6 +19,12 @@ _NODE_WORD = "node"
 _DIGEST_LENGTH = 8
 _PARTS = re.compile(r"(?:Request|Response|Goal|Result|Feedback|Action)\Z")
 """How classes of a part of a service or an action end in ROS 1."""
+_HOLDING = (ast.List, ast.Tuple, ast.Set, ast.Dict, ast.ListComp, ast.SetComp, ast.DictComp)
+_MAKING = frozenset({"list", "dict", "set", "deque"})
+_COPYING = frozenset({"list", "tuple", "set", "sorted", "reversed", "iter", "next", "deque"})
+_ADDING = frozenset({"append", "appendleft", "add", "insert", "setdefault"})
+_TAKING = frozenset({"values", "get", "pop", "popleft", "copy"})
+"""How lists and dictionaries are made, copied, given something, and asked for what they hold."""
 _Function = ast.FunctionDef | ast.AsyncFunctionDef
 _Trace = tuple[str, tuple[str, ...]]
 
@@ -53,7 +59,7 @@ class OwnField:
     """A field that is read, set, or given to a message that is made: the last one of `chain`.
 
     `root` is the class that the chain begins with (`std_msgs/msg/Float32`, `my_msgs/action/Pick/Goal`), else the method and the
-    number of its argument: `receive_scan#0`, or what a call of the node answers with: `call_reset()`.
+    number of its argument: `receive_scan#0`, or what a call of the node answers with: `call_reset()`, `send_pick:Result()`, `send_pick:Feedback`.
     """
 
     root: str
@@ -231,76 +237,132 @@ class _CodeReader:
         }
         roots |= {name: (root, ()) for name, root in self._answers.get(function.name, {}).items()}
         # In the order of the text: `pose = message.pose`, `for point in pose.points`.
-        taken = [each for each in ast.walk(function) if isinstance(each, ast.Assign | ast.For)]
-        for each in sorted(taken, key=lambda each: each.lineno):
-            for target in each.targets if isinstance(each, ast.Assign) else [each.target]:
-                traced = self._trace_fields(each.value if isinstance(each, ast.Assign) else each.iter, roots)
-                if isinstance(target, ast.Name):
-                    is_another = target.id in roots and roots[target.id] != traced
-                    roots[target.id] = traced if traced and not is_another else ("", ())
+        bindings = [binding for each in ast.walk(function) for binding in _list_bindings(each)]
+        for target, value in sorted(bindings, key=lambda each: each[0].lineno):
+            for name, traced in self._trace_targets(target, value, roots):
+                if isinstance(name, ast.Name):
+                    is_another = name.id in roots and roots[name.id] != traced
+                    roots[name.id] = traced if traced and not is_another else ("", ())
         return {name: root for name, root in roots.items() if root[0]}
 
     def _find_kept(self) -> dict[str, _Trace]:
-        """Return what attributes stand for that are given one thing alone, and None: `self.asked = self.node.call_reset(request)`."""
+        """Return what attributes stand for that are given one thing alone, and nothing: `self.asked = self.node.call_reset(request)`.
+
+        A list, a set or a dictionary is called as what it holds; of what is unpacked, each part has its place: `waiting[1]`.
+        """
         attributes = [each for each in ast.walk(self._tree) if isinstance(each, ast.Attribute)]
         unseen = Counter(each.attr for each in attributes if isinstance(each.ctx, ast.Store))
         given: dict[str, set[_Trace | None]] = {}
         for function in (each for each in self._list_functions() if isinstance(each, _Function)):
             roots = self._find_roots(function)
-            for each in ast.walk(function):
-                targets = [each.target] if isinstance(each, ast.AnnAssign) else getattr(each, "targets", ())
-                value = each.value if isinstance(each, ast.Assign | ast.AnnAssign) else None
-                traces = () if value is None or _is_none(value) else (self._trace_fields(value, roots),)
-                for target in targets:
-                    if isinstance(target, ast.Attribute):
+            for target, value in (binding for each in ast.walk(function) for binding in _list_bindings(each)):
+                for name, traced in self._trace_targets(target, value, roots):
+                    if isinstance(name, ast.Attribute):
+                        unseen[name.attr] -= isinstance(name.ctx, ast.Store)
+                        given.setdefault(name.attr, set()).add(traced)
+                        parts = value.elts if isinstance(value, ast.Tuple) else ()
+                        for place, part in enumerate(parts):  # `self.waiting.append((row, future))`
+                            given.setdefault(f"{name.attr}[{place}]", set()).add(self._trace_fields(part, roots))
+            for each in ast.walk(function):  # `self.asked = None`, `self.waiting = []`
+                for target in getattr(each, "targets", ()) or [getattr(each, "target", None)]:
+                    if isinstance(target, ast.Attribute) and _is_empty(getattr(each, "value", None)):
                         unseen[target.attr] -= 1
-                        given.setdefault(target.attr, set()).update(traces)
         single = {name: next(iter(traces)) for name, traces in given.items() if len(traces) == 1 and not unseen[name]}
         return {name: trace for name, trace in single.items() if trace}
 
     def _find_answers(self) -> dict[str, dict[str, str]]:
-        """Return by function which of its names are futures of calls: what `add_done_callback` is given is called with one."""
+        """Return by function which of its names are futures of calls, or feedback: what is given as a callback is called with one."""
         answers: dict[str, dict[str, str]] = {}
         functions = {each.name: each for each in ast.walk(self._tree) if isinstance(each, _Function)}
         for outer in (each for each in self._list_functions() if isinstance(each, _Function)):
             roots = self._find_roots(outer)
-            for each in ast.walk(outer):
-                if not (isinstance(each, ast.Call) and isinstance(each.func, ast.Attribute) and each.args):
-                    continue
-                future, callback = self._trace_fields(each.func.value, roots), each.args[0]
-                if each.func.attr == "add_done_callback" and future and future[0].endswith("()"):
-                    given = callback if isinstance(callback, ast.Lambda) else functions.get(_last_word(callback))
-                    names = [argument.arg for argument in given.args.args if argument.arg != "self"] if given else []
-                    home = given.name if isinstance(given, _Function) and given in self._outermost else outer.name
-                    answers.setdefault(home, {}).update(dict.fromkeys(names[:1], future[0]))
+            calls = [each for each in ast.walk(outer) if isinstance(each, ast.Call)]
+            for callback, root in (found for each in calls for found in self._list_callbacks(each, roots)):
+                given = callback if isinstance(callback, ast.Lambda) else functions.get(_last_word(callback))
+                names = [argument.arg for argument in given.args.args if argument.arg != "self"] if given else []
+                home = given.name if isinstance(given, _Function) and given in self._outermost else outer.name
+                answers.setdefault(home, {}).update(dict.fromkeys(names[:1], root))
         return answers
+
+    def _list_callbacks(self, call: ast.Call, roots: Mapping[str, _Trace]) -> Iterator[tuple[ast.expr, str]]:
+        """Yield what a call gives to be called back, with what that is called with."""
+        called = call.func
+        if not isinstance(called, ast.Attribute):
+            return
+        if called.attr == "add_done_callback" and call.args:
+            future = self._trace_fields(called.value, roots)
+            if future and future[0].endswith("()"):
+                yield call.args[0], future[0]
+        elif called.attr.startswith("send_") and self._is_node(called.value):
+            named = [each.value for each in call.keywords if each.arg == "feedback_callback"]
+            yield from ((each, f"{called.attr}:Feedback") for each in (*call.args[1:2], *named))
+
+    def _trace_targets(
+        self, target: ast.expr, value: ast.expr, roots: Mapping[str, _Trace]
+    ) -> Iterator[tuple[ast.expr, _Trace | None]]:
+        """Yield names and attributes that are given something, with what that is; what takes an item is its list."""
+        while isinstance(target, ast.Subscript):
+            target = target.value
+        if not isinstance(target, ast.Tuple | ast.List):
+            yield target, self._trace_fields(value, roots)
+            return
+        for place, part in enumerate(target.elts):
+            if isinstance(value, ast.Tuple) and len(value.elts) == len(target.elts):
+                yield from self._trace_targets(part, value.elts[place], roots)
+            else:
+                yield part, self._trace_part(value, place, roots)
+
+    def _trace_part(self, value: ast.expr, place: int, roots: Mapping[str, _Trace]) -> _Trace | None:
+        """Return what stands at a place of each item that is unpacked: `for row, future in self.waiting`."""
+        called = _last_word(value.func) if isinstance(value, ast.Call) else ""
+        if isinstance(value, ast.Call) and called == "zip" and len(value.args) > place:
+            return self._trace_fields(value.args[place], roots)
+        if isinstance(value, ast.Call) and called in {"items", "enumerate"} and place == 1:
+            held = value.func.value if isinstance(value.func, ast.Attribute) else next(iter(value.args), None)
+            return self._trace_fields(held, roots) if held else None
+        while isinstance(value, ast.Call) and called in _COPYING and value.args:
+            value = value.args[0]
+            called = _last_word(value.func) if isinstance(value, ast.Call) else ""
+        return (
+            self._kept.get(f"{value.attr}[{place}]") if isinstance(value, ast.Attribute) and _is_kept(value) else None
+        )
 
     def _trace_fields(self, expression: ast.expr, roots: Mapping[str, _Trace]) -> _Trace | None:
         """Return where an expression begins and which fields it goes through; items of a list are what the list is called."""
         if isinstance(expression, ast.Name):
             return roots.get(expression.id)
-        if isinstance(expression, ast.Subscript):
+        if isinstance(expression, ast.Subscript | ast.Await):
             return self._trace_fields(expression.value, roots)
         if isinstance(expression, ast.Call):
             return self._trace_call(expression, roots)
-        if isinstance(expression, ast.Await):
-            return self._trace_fields(expression.value, roots)
+        if isinstance(expression, _HOLDING):
+            traces = {self._trace_fields(each, roots) for each in _list_held(expression)}
+            return next(iter(traces)) if len(traces) == 1 else None
         if isinstance(expression, ast.Attribute) and _is_kept(expression):
             return self._kept.get(expression.attr)
         inner = self._trace_fields(expression.value, roots) if isinstance(expression, ast.Attribute) else None
         return (inner[0], (*inner[1], expression.attr)) if inner and isinstance(expression, ast.Attribute) else None
 
     def _trace_call(self, call: ast.Call, roots: Mapping[str, _Trace]) -> _Trace | None:
-        """Return the class that a call makes, or the service that it asks: its answer and the future of that are one."""
+        """Return the class that a call makes, or whom it asks: its answer and the future of that are one."""
         if made := self._find_class(call.func):
             return made, ()
         taken = call.func
-        if isinstance(taken, ast.Attribute) and taken.attr.startswith("call_") and self._is_node(taken.value):
+        if (
+            isinstance(taken, ast.Attribute)
+            and taken.attr.startswith(("call_", "send_"))
+            and self._is_node(taken.value)
+        ):
             return f"{taken.attr}()", ()
-        if isinstance(taken, ast.Attribute) and taken.attr == "result":
+        if isinstance(taken, ast.Attribute) and taken.attr in {"result", "get_result_async"}:
             future = self._trace_fields(taken.value, roots)
-            return future if future and future[0].endswith("()") and not future[1] else None
-        return None
+            if not future or not future[0].endswith("()") or future[1]:
+                return None
+            return future if taken.attr == "result" else (future[0].replace("()", ":Result()"), ())
+        if isinstance(taken, ast.Attribute) and taken.attr in _TAKING:
+            return self._trace_fields(taken.value, roots)
+        is_copied = isinstance(taken, ast.Name) and taken.id in _COPYING and call.args
+        return self._trace_fields(call.args[0], roots) if is_copied else None
 
     def _list_uses(self) -> tuple[list[OwnName], list[OwnName], list[OwnName]]:
         uses: list[OwnName] = []
@@ -375,8 +437,34 @@ def _is_kept(attribute: ast.Attribute) -> bool:
     return isinstance(attribute.value, ast.Name) and attribute.value.id == "self"
 
 
-def _is_none(expression: ast.expr) -> bool:
-    return isinstance(expression, ast.Constant) and expression.value is None
+def _is_empty(expression: ast.expr | None) -> bool:
+    """Whether it is None, or a list or the like that holds nothing yet."""
+    if isinstance(expression, ast.Call):
+        return _last_word(expression.func) in _MAKING and not expression.args
+    is_none = isinstance(expression, ast.Constant) and expression.value is None
+    return is_none or (isinstance(expression, ast.List | ast.Set | ast.Dict | ast.Tuple) and not _list_held(expression))
+
+
+def _list_held(expression: ast.expr) -> Sequence[ast.expr]:
+    """Return what a list, a set, a tuple or a dictionary holds, by what it is written."""
+    if isinstance(expression, ast.Dict):
+        return expression.values
+    if isinstance(expression, ast.DictComp):
+        return [expression.value]
+    return [expression.elt] if isinstance(expression, ast.ListComp | ast.SetComp) else getattr(expression, "elts", [])
+
+
+def _list_bindings(node: ast.AST) -> Iterator[tuple[ast.expr, ast.expr]]:
+    """Yield what a part of a program gives a name, an attribute or a list, each with what it gives; what is empty is nothing."""
+    value = node.iter if isinstance(node, ast.For | ast.comprehension) else getattr(node, "value", None)
+    if isinstance(node, ast.For | ast.comprehension | ast.Assign | ast.AnnAssign) and value and not _is_empty(value):
+        yield from ((each, value) for each in (node.targets if isinstance(node, ast.Assign) else [node.target]))
+    elif isinstance(node, ast.Call) and isinstance(node.func, ast.Attribute) and node.args:
+        held = node.func.value
+        if node.func.attr in _ADDING and (
+            isinstance(held, ast.Name) or (isinstance(held, ast.Attribute) and _is_kept(held))
+        ):
+            yield held, node.args[-1]
 
 
 def _list_words(expression: ast.expr | None) -> Sequence[str]:

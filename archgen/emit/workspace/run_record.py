@@ -71,6 +71,8 @@ class RunRecord:
 
     backend: str
     files: Mapping[str, RecordedFile] = field(default_factory=dict)
+    is_on_disk: bool = False
+    """Whether the workspace has just this record, laid out as archgen does."""
 
 
 def read_run_record(workspace: Path, backend: str) -> RunRecord:
@@ -82,7 +84,7 @@ def read_run_record(workspace: Path, backend: str) -> RunRecord:
         raise _explain_bad_record(path, "it is no plain file")
     files: dict[str, RecordedFile] = {}
     try:
-        entries = _list_entries(path.read_text("utf-8"))
+        entries, is_plain = _list_entries(path.read_text("utf-8"))
         if entries[0] != ("archgen", _FORMAT):
             raise _explain_bad_record(path, "another version of archgen wrote it")
         for name, entry in entries:
@@ -91,17 +93,20 @@ def read_run_record(workspace: Path, backend: str) -> RunRecord:
                 files[name] = _join_entries(files[name], file) if name in files else file
     except (ValueError, LookupError, TypeError, AttributeError, RecursionError):
         raise _explain_bad_record(path, "it is damaged") from None
-    return RunRecord(backend, files)
+    return RunRecord(backend, files, is_plain)
 
 
-def _list_entries(text: str) -> list[tuple[str, Any]]:
-    """Return what a record says, line by line: where git merged two it says of some files what each side says."""
+def _list_entries(text: str) -> tuple[list[tuple[str, Any]], bool]:
+    """Return what a record says, line by line, and whether it is laid out as archgen does.
+
+    Where git merged two it says of some files what each side says.
+    """
     entries: list[tuple[str, Any]] = []
     with contextlib.suppress(ValueError, LookupError, TypeError, AttributeError):
         data = json.loads(text)
         # As archgen writes it, each entry on a line: then no name stands there twice.
         if text.count("\n") == len(data["files"]) + _FRAME_COUNT:
-            return [("archgen", data["archgen"]), *data["files"].items()]
+            return [("archgen", data["archgen"]), *data["files"].items()], True
     try:
         for line in text.splitlines():
             if line.strip() not in _FRAME_LINES and not line.startswith(_MARKERS):
@@ -109,7 +114,7 @@ def _list_entries(text: str) -> list[tuple[str, Any]]:
     except ValueError:  # somebody's tool laid it out anew
         data = json.loads(text)
         entries = [("archgen", data["archgen"]), *data["files"].items()]
-    return sorted(entries, key=lambda each: each[0] not in _HEAD_KEYS)
+    return sorted(entries, key=lambda each: each[0] not in _HEAD_KEYS), False
 
 
 def _join_entries(first: RecordedFile, second: RecordedFile) -> RecordedFile:
@@ -176,7 +181,7 @@ def take_over_runs(record: RunRecord, old_project: str, project: str) -> RunReco
         )
         for path, file in record.files.items()
     }
-    return replace(record, files=files)
+    return RunRecord(record.backend, files)
 
 
 def read_other_records(workspace: Path, backend: str) -> Mapping[str, str]:
@@ -187,6 +192,12 @@ def read_other_records(workspace: Path, backend: str) -> Mapping[str, str]:
         if name != backend
         for path in read_run_record(workspace, name).files
     }
+
+
+def read_other_own_files(workspace: Path, backend: str) -> Mapping[str, RecordedFile]:
+    """Return the files of the user's own that other backends made in a workspace."""
+    others = (read_run_record(workspace, name) for name in list_recorded_backends(workspace) if name != backend)
+    return {path: file for record in others for path, file in record.files.items() if file.once}
 
 
 def list_recorded_backends(workspace: Path) -> list[str]:

@@ -6,8 +6,7 @@ import hashlib
 import re
 import sys
 from collections import defaultdict
-from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
 from functools import cached_property
 from pathlib import Path
 from typing import Literal
@@ -24,6 +23,7 @@ from archgen.emit.workspace.run_record import (
     join_digests,
     split_digests,
 )
+from archgen.frozen import dataclass, field, replace
 
 
 class KnownFits:
@@ -67,6 +67,7 @@ FileVerb = Literal["new", "changed", "merged", "same", "removed", "yours", "left
 `yours` are the user's own files, `left` are those that are no longer made, but were edited: they are the user's from now on.
 """
 CONFLICTS: frozenset[FileVerb] = frozenset({"edited", "foreign", "blocked"})
+_OUTLIVED = "nothing that is generated needs it any more"
 STALE: frozenset[FileVerb] = frozenset({"new", "changed", "removed", "merged"})
 """What has to be done so that a workspace is as the architecture says."""
 
@@ -94,6 +95,8 @@ class UserChoices:
     """Whether only that goes which archgen wrote and makes no more: another backend waits for its place."""
     fits: KnownFits = field(default_factory=KnownFits)
     """Which files of the user's own fitted before."""
+    read_others: Callable[[], Mapping[str, RecordedFile]] = dict
+    """Returns the files of the user's own that other backends made here: what is in another language now has one of them."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -111,7 +114,7 @@ class WorkspacePlan:
     intent: RunRecord
     """What is true while files are being moved: of each the old digest and the new one are known."""
     record: RunRecord
-    """What is true afterwards."""
+    """What is true afterwards, and whether the workspace says so already."""
 
     def count(self, verb: FileVerb) -> int:
         """Return how many files something is done with."""
@@ -121,6 +124,11 @@ class WorkspacePlan:
     def conflicts(self) -> tuple[FileStep, ...]:
         """The files that should have been written, and were not."""
         return tuple(step for step in self.steps if step.verb in CONFLICTS)
+
+    @property
+    def has_orphans(self) -> bool:
+        """Whether nothing needs code of the user's own any more, and nothing is known to take its place."""
+        return any(step.verb == "yours" and step.note == _OUTLIVED for step in self.steps)
 
     @property
     def has_unfit_code(self) -> bool:
@@ -150,7 +158,7 @@ def plan_workspace(
     return planner.finish()
 
 
-@dataclass
+@dataclass()
 class _Planner:
     """Collects the parts of a plan."""
 
@@ -238,6 +246,10 @@ class _Planner:
         for path, file in self.files_by_path.items():
             wanted_files[path.rpartition("/")[2]].append(file)
         return wanted_files
+
+    @cached_property
+    def _files_of_others(self) -> Mapping[str, RecordedFile]:
+        return self.choices.read_others()
 
     @cached_property
     def _leaving_lines(self) -> frozenset[str]:
@@ -350,6 +362,11 @@ class _Planner:
         known = self.old_record.files.get(entry.successor)
         if known and entry.successor in self.files_by_path:
             return entry.successor if self.disk.read(entry.successor).has_digest(known.digests) else ""
+        elements = _list_elements(entry)
+        # In another language: another backend has made it, and for the same ports of the model.
+        alike = {each: file for each, file in self._files_of_others.items() if elements & _list_elements(file)}
+        if alike and all(self.disk.read(each).has_digest(file.digests) for each, file in alike.items()):
+            return max(alike)
         own_ports = _list_ports(entry)
         likeness = {
             each: (len(_list_ports(self.entries[each]) & own_ports), each.rpartition("/")[2] == path.rpartition("/")[2])
@@ -365,13 +382,12 @@ class _Planner:
         old_files = self.old_record.files
         for path, entry in self._outlived.items():
             successor = self._find_successor(path, entry)
-            message = "nothing that is generated needs it any more"
             if successor:
                 self.entries[path] = replace(entry, successor=successor)
-                words = f"{message}; it may become {successor}, which is empty: move what you wrote there, and take this file away"
+                words = f"{_OUTLIVED}; it may become {successor}, which is empty: move what you wrote there, and take this file away"
                 self.steps.append(FileStep(path, "yours", findings=(CodeFinding(words, 1, 1),)))
             else:
-                self.steps.append(FileStep(path, "yours", message))
+                self.steps.append(FileStep(path, "yours", _OUTLIVED))
         intended_files = dict(self.entries)
         for path in self.writes:
             if path in old_files:
@@ -388,13 +404,18 @@ class _Planner:
             tuple(self.removals),
             tuple(self.vanished),
             RunRecord(self.old_record.backend, intended_files),
-            RunRecord(self.old_record.backend, self.entries),
+            RunRecord(self.old_record.backend, self.entries, self.old_record.is_on_disk and self.entries == old_files),
         )
 
 
 def _list_ports(entry: RecordedFile) -> set[str]:
     """Return the names of a file that stand for ports: many files have a timer, or know the fields of a message."""
     return {each for each in entry.meanings if not each.startswith((".", "'", "on_"))}
+
+
+def _list_elements(entry: RecordedFile) -> set[tuple[str, str]]:
+    """Return the ports of a file with what they stand for in the model."""
+    return {(each, entry.meanings[each].lstrip("+").partition(":")[0]) for each in _list_ports(entry)}
 
 
 def _choose_mode(file: GeneratedFile, entry: RecordedFile | None, on_disk: DiskFile) -> int:

@@ -117,7 +117,7 @@ def _put_record(record: RunRecord, workspace: Path, staging: Path) -> bool:
     if not record.files:
         path.unlink(missing_ok=True)
         return True
-    return _replace(path, write_run_record(record), staging)
+    return not record.is_on_disk and _replace(path, write_run_record(record), staging)
 
 
 def _put_attributes(workspace: Path, staging: Path) -> None:

@@ -74,12 +74,9 @@ def make_view(context: GenerationContext, ros: int = 2) -> GeneratedView:
     programs, unusable = drop_unusable(all_programs, language)
     findings += unusable
     refused_messages = find_refused_messages(context.architecture, ros)
-    all_endpoints = index_endpoints(context.architecture)
+    endpoints = index_endpoints(context.architecture)
     for node in (node for nodes in programs.values() for node in nodes):
-        findings += _tell_refused(context.architecture, all_endpoints.get(node.id, ()), refused_messages)
-    endpoints = {
-        node: [each for each in used if each.message not in refused_messages] for node, used in all_endpoints.items()
-    }
+        findings += _tell_refused(context.architecture, endpoints.get(node.id, ()), refused_messages)
     packages: dict[str, dict[str, object]] = {}
     records: list[dict[str, object]] = []
     made_nodes: list[Sequence[Node]] = []
@@ -92,7 +89,7 @@ def make_view(context: GenerationContext, ros: int = 2) -> GeneratedView:
             if bad_classes:
                 continue
         record, program_findings = _record_program(
-            context, (package_name, program_name), program_nodes, endpoints, program_names
+            context, (package_name, program_name), program_nodes, program_names, refused_messages
         )
         if is_cpp:
             complete_cpp_program(context.architecture, record, program_nodes)
@@ -204,13 +201,13 @@ def _record_program(
     context: GenerationContext,
     package_and_program: tuple[str, str],
     nodes: Sequence[Node],
-    endpoints: Mapping[str, Sequence[Endpoint]],
     program_names: ProgramNames,
+    refused_messages: Collection[str],
 ) -> tuple[dict[str, object], list[Diagnostic]]:
     architecture, first = context.architecture, nodes[0]
     package_name, program_name = package_and_program
     components = [architecture.components[each] for each in sorted(first.implements)]
-    sections, findings = record_ports(architecture, nodes, endpoints)
+    sections, findings = record_ports(architecture, nodes, program_names.find_ports(nodes), refused_messages)
     timers = list(list_timers(first))
     parameters, parameter_findings = record_parameters(architecture, nodes)
     message_packages = {str(port["package"]) for ports in sections.values() for port in ports}

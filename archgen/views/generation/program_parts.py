@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Collection, Iterable, Mapping, Sequence
 
 from archgen.analyses.topic_sources import find_endpoint_span
-from archgen.bringup.program_names import choose_own_names, find_common_message, group_endpoints, name_program
+from archgen.bringup.program_names import ProgramPorts, find_common_message, name_program
 from archgen.bringup.start_commands import has_substitution
 from archgen.diagnostics import Diagnostic
 from archgen.model.architecture import Architecture
@@ -32,25 +32,27 @@ PORT_SECTIONS: Mapping[tuple[str, str], str] = {
 
 
 def record_ports(
-    architecture: Architecture, nodes: Sequence[Node], endpoints: Mapping[str, Sequence[Endpoint]]
+    architecture: Architecture, nodes: Sequence[Node], ports: ProgramPorts, refused_messages: Collection[str] = ()
 ) -> tuple[dict[str, list[dict[str, object]]], list[Diagnostic]]:
-    """Return what the nodes of one program use, by section, and what is left out.
+    """Return what the nodes of one program use, by section, and what is left out; of a refused message somebody else tells.
 
     Nodes of one program use the same ports; the program has a name of its own for each, which each node remaps.
     """
     sections: dict[str, list[dict[str, object]]] = {name: [] for name in PORT_SECTIONS.values()}
     findings: list[Diagnostic] = []
-    groups = group_endpoints(nodes, endpoints)
-    own_names = choose_own_names(architecture, groups)
+    groups, own_names = ports
     shared_name = name_shared_program(architecture, nodes)
     # By their names: a line that moves in the YAML moves nothing in the code.
     for (use, flow, key), port_endpoints in sorted(groups.items()):
-        if find_common_message(port_endpoints) is None:
+        message = find_common_message(port_endpoints)
+        if message in refused_messages:
+            continue  # its name stays taken: scripts call the other ports as they are called beside it
+        if message is None:
             findings.append(
                 _tell_unknown_message(architecture, port_endpoints[0], {each.message for each in port_endpoints})
             )
             continue
-        if str(port_endpoints[0].message).rpartition("/")[2] in PYTHON_KEYWORDS:
+        if message.rpartition("/")[2] in PYTHON_KEYWORDS:
             findings.append(_tell_bad_message(architecture, port_endpoints[0]))
             continue
         sections[PORT_SECTIONS[use, flow]].append(

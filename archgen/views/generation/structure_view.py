@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Collection, Iterable
 from typing import Any
 
+from archgen.bringup.program_names import name_ports
 from archgen.model.architecture import Architecture
 from archgen.model.component import Component, Input, Output
 from archgen.model.node import Endpoint, Node
@@ -176,7 +177,7 @@ def _record_nodes(context: GenerationContext) -> list[dict[str, Any]]:
 
 
 def _record_node(architecture: Architecture, node: Node, endpoints: dict[str, list[Endpoint]]) -> dict[str, Any]:
-    sections, _ = record_ports(architecture, (node,), endpoints)
+    sections, _ = record_ports(architecture, (node,), name_ports(architecture, (node,), endpoints))
     parameters, _ = record_parameters(architecture, (node,))
     return {
         "id": node.id,

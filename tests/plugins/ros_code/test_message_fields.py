@@ -112,6 +112,45 @@ def test_own_code_in_python_is_told_of_fields_that_are_gone(tmp_path: Path) -> N
         assert line in done.stdout.decode()
 
 
+ACTING = """\
+archgen: 1
+project: {id: rt, title: Robot}
+ros: {distro: jazzy}
+groups: {g: {components: {arm: {outputs: {pick: Pick}}, mind: {inputs: {pick: arm.pick}, outputs: {}}}}}
+types: {Pick: {request: {force: float64}, response: {done: bool}, feedback: {share: float64}}}
+"""
+MIND = '''\
+"""Mine."""
+
+
+class Mind:
+    def __init__(self, node):
+        self.node = node
+
+    async def start(self, goal):
+        handle = await self.node.send_pick(goal, self.hear)
+        later = handle.get_result_async()
+        self.node.send_pick(goal, feedback_callback=lambda each: print(each.feedback.share, each.share))
+        return handle.accepted, (await later).result.done, later.done()
+
+    def hear(self, told):
+        self.share = told.feedback.share
+'''
+
+
+def test_a_client_is_told_of_fields_of_results_and_feedback_that_are_gone(tmp_path: Path) -> None:
+    _generate(tmp_path, ACTING, "ros2_python", 0)
+    (tmp_path / "ws/src/rt_g/rt_g/mind.py").write_text(MIND, encoding="utf-8")
+    assert _generate(tmp_path, ACTING, "ros2_python", 0) == []
+    changed = ACTING.replace("done: bool", "held: bool").replace("share: float64", "part: float64")
+    told = _generate(tmp_path, changed, "ros2_python", 1)
+    assert [each.removeprefix("error: src/rt_g/rt_g/") for each in told] == [
+        "mind.py:11:86: `rt_msgs/action/Pick/Feedback` has no field `share` any more; it is most likely `part` now",
+        "mind.py:12:54: `rt_msgs/action/Pick/Result` has no field `done` any more; it is most likely `held` now",
+        "mind.py:15:36: `rt_msgs/action/Pick/Feedback` has no field `share` any more; it is most likely `part` now",
+    ]
+
+
 def test_own_code_in_cpp_is_told_of_fields_that_are_gone(tmp_path: Path) -> None:
     told = _tell_changes(tmp_path, "ros2_cpp", "cpp", "rt_g_cpp/src/arm_behaviour.cpp", "")
     assert told == [
@@ -167,6 +206,44 @@ ANSWERS = {
             "            self.ok = self.asked.result().ok\n            self.asked = None\n"
         ),
         [("14", "43")],
+    ),
+    "futures in a list": (
+        (
+            "        self.asked = []\n\n    def start(self):\n        self.asked.append(self.node.call_mode(1))\n\n"
+            "    def look(self):\n        return [each.result().ok for each in self.asked if each.done()]\n"
+        ),
+        [("13", "31")],
+    ),
+    "futures in pairs": (
+        (
+            "        self.asked = deque(maxlen=3)\n\n    def start(self, row):\n"
+            "        self.asked.append((row, self.node.call_mode(1)))\n\n"
+            "    def look(self):\n        for row, future in list(self.asked):\n"
+            "            print(row.ok, future.result().ok)\n"
+        ),
+        [("14", "43")],
+    ),
+    "futures by name": (
+        (
+            "        self.asked = {}\n\n    def start(self, row):\n        self.asked[row] = self.node.call_mode(1)\n\n"
+            "    def look(self):\n        first = self.asked.get('a').result().ok\n"
+            "        return first, {row: each.result().ok for row, each in self.asked.items()}, self.asked['b'].ok()\n"
+        ),
+        [("13", "46"), ("14", "43")],
+    ),
+    "two at once": (
+        (
+            "    async def start(self):\n        one, two = self.node.call_mode(1), self.node.call_mode(2)\n"
+            "        return [(await each).ok for each in (one, two)] + [(await two).ok]\n"
+        ),
+        [("9", "30"), ("9", "72")],
+    ),
+    "other things in the list": (
+        (
+            "        self.asked = []\n\n    def start(self, other):\n        self.asked.append(self.node.call_mode(1))\n"
+            "        self.asked.append(other)\n\n    def look(self):\n        return self.asked[0].result().ok\n"
+        ),
+        [],
     ),
     "one of two that are kept": (
         (

@@ -621,10 +621,14 @@ def test_two_packages_swap_their_languages_in_one_run(tmp_path: Path) -> None:
     before = contents(tmp_path / "ws")
     assert "error" not in _swap(tmp_path, "cpp", "python", 1, "--check")
     assert contents(tmp_path / "ws") == before
-    assert "error" not in _swap(tmp_path, "cpp", "python", 0)
+    (error,) = [each for each in _swap(tmp_path, "cpp", "python", 1).splitlines() if "error" in each]
+    assert "eye.py:1:1" in error
+    assert "it may become src/rt_front/src/eye_behaviour.cpp, which is empty" in error
     assert "MINE" in own.read_text("utf-8")
     made = {each.parent.name: each.name for each in (tmp_path / "ws/src").rglob("*") if each.name in BUILT_BY}
     assert made == {"rt_front": "CMakeLists.txt", "rt_rear": "setup.py", "rt_msgs": "CMakeLists.txt"}
+    own.unlink()
+    _swap(tmp_path, "cpp", "python", 0)
     assert _swap(tmp_path, "cpp", "python", 0, "--check") == ""
 
 
@@ -669,3 +673,42 @@ def test_another_node_that_has_a_timer_too_is_no_successor(tmp_path: Path) -> No
     assert "wheels" not in line
     (line,) = [each for each in said.splitlines() if "rt_rig/src/wheels_behaviour.cpp" in each]
     assert "it may become src/rt_rig_cpp/src/wheels_behaviour.cpp" in line
+
+
+BOTH_LANGUAGES = """\
+archgen: 1
+project: {id: farm}
+ros: {distro: jazzy}
+generate: {into: ws, backends: {ros2_python: , ros2_cpp: }}
+groups: {g: {components: {cam: {outputs: {seen: std_msgs/msg/Bool}, timing: {rate: 1 Hz}, node: {language: LANGUAGE}}}}}
+"""
+
+
+@pytest.mark.parametrize(
+    ("before", "after", "old", "new"),
+    [
+        ("python", "cpp", "farm_g/cam.py", "farm_g/src/cam_behaviour.cpp"),
+        ("cpp", "python", "src/cam_behaviour.cpp", "farm_g/farm_g/cam.py"),
+    ],
+)
+def test_own_code_of_a_node_that_gets_another_language_is_told_until_it_is_written_there(
+    tmp_path: Path, before: str, after: str, old: str, new: str
+) -> None:
+    def run(*words: str, status: int) -> list[str]:
+        said = archgen_here("generate", *words, cwd=tmp_path, status=status).stderr.decode()
+        return [line for line in said.splitlines() if "needs it any more" in line]
+
+    project, own = tmp_path / "archgen.yaml", tmp_path / "ws/src/farm_g" / old
+    project.write_text(BOTH_LANGUAGES.replace("LANGUAGE", before), encoding="utf-8")
+    assert run(status=0) == []
+    own.write_text(f"{own.read_text('utf-8')}\n", encoding="utf-8")
+    project.write_text(BOTH_LANGUAGES.replace("LANGUAGE", after), encoding="utf-8")
+    words = "nothing that is generated needs it any more"
+    told = f"error: src/farm_g/{old}:1:1: {words}; it may become src/{new}, which is empty: "
+    for check in ((), ("--check",)):
+        (said,) = run(*check, status=1)
+        assert said.startswith(told)
+    written = tmp_path / "ws/src" / new
+    written.write_text(f"{written.read_text('utf-8')}\n", encoding="utf-8")
+    assert run(status=0) == [f"warning: src/farm_g/{old}: {words}"]
+    assert run(status=0) == []

@@ -8,6 +8,7 @@ from archgen.plugins.ros_code.launch_view import make_view as make_launch_view
 from archgen.plugins.ros_code.node_programs import make_view as make_programs
 from archgen.views.generation.generation_context import GenerationContext
 from tests.bringup.test_program_names import EXPECTED, read
+from tests.plugins.ros_code.test_ros2_cpp import write_project
 
 
 def test_all_who_ask_get_one_answer(tmp_path: Path) -> None:
@@ -35,3 +36,21 @@ def test_a_program_is_the_same_where_only_some_of_its_nodes_are_asked_for(tmp_pa
     # Its nodes, too: their values stand in one file of the package.
     assert [each["id"] for each in part["nodes"]] == ["l", "r"]
     assert whole == part
+
+
+def test_a_port_keeps_its_name_where_another_one_is_refused(tmp_path: Path) -> None:
+    """Launch files and scripts remap what the program says, also while a message beside it is left out."""
+    text = """\
+archgen: 1
+project: {id: rt}
+ros: {distro: jazzy}
+types: {Good: {fields: {x: float64}}, Bad: {fields: {class: float64}}}
+groups: {g: {components: {a: {outputs: {pose: Good}}, b: {outputs: {pose: Bad}}}}}
+nodes: {n: {implements: [a, b]}}
+"""
+    context = GenerationContext(write_project(tmp_path, text).architecture)
+    (program,) = make_programs(context).data["programs"]
+    assert [port["topic"] for port in program["publishers"]] == ["a_pose"]
+    (host,) = make_launch_view(context, 2).data["hosts"]
+    (entry,) = [block["entry"] for phase in host["phases"] for block in phase["blocks"]]
+    assert "a_pose" in list_names(entry)
