@@ -12,7 +12,7 @@ from collections.abc import Callable
 from typing import Any
 
 from archgen.plugin.importing import make_id
-from archgen.plugin.model import MEDIUM_NAMES
+from archgen.plugin.model import MEDIUM_NAMES, parse_quantity
 from archgen.plugins.aadl.aadl_tree import Path
 from archgen.plugins.aadl.archgen_words import find_own_text, read_component_words, read_port_words
 from archgen.plugins.aadl.element_hints import keep_sources, keep_structure, keep_thread
@@ -106,6 +106,10 @@ def _map_dispatch(scope: PropertyScope, path: Path) -> dict[str, Any]:
         scope.resolver.notes.add_counted(f"Dispatch_Protocol {protocol}", words, protocol_property.span)
     period = read_duration(scope.inherited_value(path, "period"))
     rate = find_own_text(scope, path, "rate")
+    if rate and not parse_quantity(rate, "frequency"):
+        said = scope.find(path, "archgen::rate")
+        scope.resolver.notes.add_contradiction("Rate", "this is no rate", said.span) if said else None
+        rate = ""
     if rate:
         timing["rate"] = rate
     elif period and protocol in {"periodic", ""}:
