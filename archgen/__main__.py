@@ -112,12 +112,18 @@ def _start_keeping() -> RunKeeper | None:
         return None
     from archgen.cache.kept_runs import RunKeeper
 
-    keeper = RunKeeper(sys.argv[1:])
+    keeper = RunKeeper(sys.argv[1:], _ask_git)
     status = keeper.repeat()
     if status is not None:
         sys.exit(status)
     keeper.start_noting()
     return keeper
+
+
+def _ask_git(folder: str, arguments: list[str]) -> object:
+    from archgen.git.git_call import ask_git
+
+    return ask_git(folder, arguments)
 
 
 def _leave_quietly() -> None:

@@ -4,8 +4,14 @@ from __future__ import annotations
 
 import os
 
-KEPT_VERBS: tuple[str, ...] = ("check", "generate")
-"""Verbs whose runs are kept: their words follow from what they read, not from the time, nor from what git or somebody at the keyboard says."""
+TYPE_CHECKING = False
+if TYPE_CHECKING:  # as type checkers read it, without loading `typing`
+    from typing import Any
+
+KEPT_VERBS: tuple[str, ...] = ("check", "generate", "build")
+"""Verbs whose runs are kept: their words follow from what they read and what git says, not from the time, nor from somebody at the keyboard."""
+note_git: Any = None
+"""What notes each question to git and its answer while a run is noted: takes what asks git, the folder and the words."""
 SETTLED_NANOSECONDS = 2_000_000_000
 """File systems have clocks that tick as slowly as this: what changed later may change again at the same tick."""
 

@@ -17,8 +17,10 @@ import re
 import stat
 import sys
 import time
+from itertools import takewhile
 from typing import TYPE_CHECKING, Any, cast
 
+from archgen import cache
 from archgen.cache import SETTLED_NANOSECONDS, find_cache_path
 from archgen.installed_plugins import list_all_entries
 
@@ -62,6 +64,31 @@ Folders may be made and removed: what is made in them is opened to be written.
 """
 _FACTS_OF_FILES = 7
 """So much is said of a file before the date of its last change."""
+_GIT_WORDS = frozenset(
+    {
+        *(
+            "log",
+            "ls-tree",
+            "rev-parse",
+            "HEAD",
+            "-1",
+            "-r",
+            "-z",
+            "--format=%h",
+            "--format=%cs",
+            "--no-show-signature",
+        ),
+        *(
+            "--verify",
+            "--quiet",
+            "--is-bare-repository",
+            "--is-shallow-repository",
+            "--is-inside-git-dir",
+            "--show-prefix",
+        ),
+    }
+)
+"""What git is asked again in a word that may be an option. A record that asks for anything else is not followed."""
 _SAFE_TEXT = re.compile(r"(?:[^\x00-\x08\x0b-\x1f\x7f-\x9f]|\x1b\[[0-9;]*+m)*+")
 
 
@@ -72,8 +99,8 @@ class _UnkeptError(Exception):
 class RunKeeper:
     """A run: repeated from what is kept, or noted and kept."""
 
-    def __init__(self, words: Sequence[str]) -> None:
-        """Take the words of the command line."""
+    def __init__(self, words: Sequence[str], ask_git: Callable[[str, list[str]], object]) -> None:
+        """Take the words of the command line, and what asks git in a folder."""
         folder = find_cache_path()
         self._path = folder and os.path.join(folder, _name_run(words) + _SUFFIX)  # noqa: PTH118 - pathlib takes longer to load than all this takes
         self._asked: dict[tuple[str, str], str] = {}
@@ -81,6 +108,7 @@ class RunKeeper:
         self._said: list[tuple[int, str]] = []
         self._is_keepable = self._path is not None
         self._is_noting = False
+        self._ask_git = ask_git
         self._originals: list[tuple[Any, str, Callable[..., Any]]] = []
         self._settled_before = time.time_ns() - SETTLED_NANOSECONDS
 
@@ -95,7 +123,7 @@ class RunKeeper:
             # Nothing but text and its colours reaches a terminal, whoever wrote this file.
             is_sound = is_own and record["status"] in {0, 1} and _is_safe(record["said"])
             said = [(number, text.encode()) for number, text in record["said"]]
-            if not is_sound or any(_ask_disk(kind, path) != answer for kind, path, answer in record["asked"]):
+            if not is_sound or any(self._ask_again(kind, path) != answer for kind, path, answer in record["asked"]):
                 return None
         except (OSError, ValueError, TypeError, KeyError, RecursionError):
             return None
@@ -120,6 +148,7 @@ class RunKeeper:
         for module, name, kind in (*_NOTED_FUNCTIONS, *early_takers):
             self._originals.append((module, name, getattr(module, name)))
             setattr(module, name, self._note_calls(getattr(module, name), kind))
+        cache.note_git = self._note_git
         self._is_noting = True
 
     def stop_noting(self) -> None:
@@ -127,6 +156,7 @@ class RunKeeper:
         if not self._originals:
             return
         self._is_noting = False
+        cache.note_git = None
         while self._originals:
             setattr(*self._originals.pop())
         copies = sys.stdout, sys.stderr
@@ -178,8 +208,30 @@ class RunKeeper:
 
         return ask
 
+    def _note_git(self, ask: Callable[..., Any], folder: str, words: Sequence[str]) -> Any:  # noqa: ANN401 - git's answer
+        if not self._is_noting or not _are_plain(words):
+            return ask(folder, words)  # the process that is started is an act
+        self._is_noting = False
+        try:
+            result = ask(folder, words)
+        finally:
+            self._is_noting = True
+        question, answer = ("git", json.dumps([os.path.abspath(folder), words])), _digest(repr(result))  # noqa: PTH100 - as above
+        self._is_keepable &= self._asked.setdefault(question, answer) == answer
+        return result
+
+    def _ask_again(self, kind: str, path: str) -> str:
+        if kind != "git":
+            return _ask_disk(kind, path)
+        folder, words = json.loads(path)
+        if not _are_plain(words):
+            raise ValueError(path)
+        return _digest(repr(self._ask_git(folder, words)))
+
     def _settle_answer(self, kind: str, path: str) -> str:
-        """Return what the disk answers. Raise _UnkeptError where it may have answered otherwise during the run."""
+        """Return what the disk answers, or what git said. Raise _UnkeptError where the disk may have said otherwise during the run."""
+        if kind == "git":
+            return self._asked[kind, path]
         try:
             status = _LSTAT(path)
         except OSError:
@@ -239,6 +291,11 @@ def _is_writing(how: int | str = "r", *, flags: int = 0, mode: str = "r", **_: o
     """Whether arguments behind the path, of `open` or of `os.open`, open a file to be written."""
     is_marked = bool((how if isinstance(how, int) else flags) & _WRITING_FLAGS)
     return is_marked or not _WRITING_LETTERS.isdisjoint(f"{how}{mode}")
+
+
+def _are_plain(words: Sequence[str]) -> bool:
+    """Whether words for git ask for nothing but what a project's files are in its commits."""
+    return _GIT_WORDS.issuperset(takewhile(lambda word: word not in {"--", "--end-of-options"}, words))
 
 
 def _is_safe(said: Sequence[tuple[int, str]]) -> bool:

@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 
+from archgen import cache
 from archgen.frozen import NamedTuple
 
 
@@ -62,6 +63,12 @@ class GitResult(NamedTuple):
 
 def run_git(folder: Path, *arguments: str, stdin: bytes = b"") -> GitResult:
     """Run one git command in a folder."""
+    note_git = None if stdin else cache.note_git
+    return note_git(ask_git, str(folder), arguments) if note_git else ask_git(str(folder), arguments, stdin)
+
+
+def ask_git(folder: str, arguments: Sequence[str], stdin: bytes = b"") -> GitResult:
+    """Run one git command in a folder, whether or not runs are noted."""
     # Imported only when git is called: it would add to the start-up time of every command.
     import subprocess
 

@@ -26,6 +26,7 @@ class FlowMapping(dict[str, object]):
 
 
 _MAX_FLOW_LINE = 120
+_MAX_PLAIN_KEY = 1000
 _PLAIN_SCALAR = re.compile(
     r"[A-Za-z0-9_/(<+^$][^\x00-\x1f\x7f-\xa0\u2028\u2029\ufeff\ufffe\uffff\ud800-\udfff#:,\[\]{}'\"]*\Z"
 )
@@ -53,7 +54,10 @@ def _write_mapping(
 ) -> Iterator[str]:
     for key, value in data.items():
         element_path = (*parent_path, key)
-        yield from _write_entry(f"{indent}{_format_key(key)}:", value, indent, element_path, comments)
+        text = _format_text(key)
+        # A longer key is none to YAML unless a question mark says so.
+        head = f"{indent}{text}:" if len(text) <= _MAX_PLAIN_KEY else f"{indent}? {text}\n{indent}:"
+        yield from _write_entry(head, value, indent, element_path, comments)
 
 
 def _write_entry(
@@ -127,10 +131,6 @@ def _format_item(value: object) -> str:
 
 def _format_float(value: float) -> str:
     return ".nan" if value != value else repr(value)  # noqa: PLR0124 - what tells NaN
-
-
-def _format_key(key: str) -> str:
-    return _format_text(key)
 
 
 def _format_text(text: str) -> str:

@@ -16,6 +16,7 @@ import pytest
 from archgen import cache
 from archgen.cache import find_cache_path, kept_runs
 from archgen.cache.kept_runs import RunKeeper
+from archgen.git.git_call import ask_git, run_git
 from tests.measured_project import PROJECT
 
 pytestmark = pytest.mark.skipif(sys.version_info >= (3, 13), reason="nothing is kept there")
@@ -25,7 +26,7 @@ _SLICE = "groups: {g: {components: {c: {outputs: {o: T}}}}}\n"
 @pytest.fixture(autouse=True)
 def _empty_cache(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[None]:
     monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "cache"))
-    monkeypatch.setattr(cache, "KEPT_VERBS", ("check", "generate"))
+    monkeypatch.setattr(cache, "KEPT_VERBS", ("check", "generate", "build"))
     monkeypatch.setattr(kept_runs, "SETTLED_NANOSECONDS", -10_000_000)
     # The code of this process is more than that of any run.
     monkeypatch.setattr(kept_runs, "_list_code", lambda: {("bytes", "toy.py"): ""})
@@ -38,7 +39,7 @@ def _empty_cache(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[No
 
 def _run(ask: Callable[[], object], words: tuple[str, ...] = ("check",)) -> bool:
     """Let something ask the disk in a run; return whether it was repeated instead."""
-    keeper = RunKeeper(words)
+    keeper = RunKeeper(words, ask_git)
     if keeper.repeat() is not None:
         return True
     keeper.start_noting()
@@ -137,13 +138,13 @@ def test_a_run_that_does_more_than_read_is_not_kept(act: Callable[[], object]) -
 def test_a_run_whose_file_changes_meanwhile_is_not_kept() -> None:
     Path("a").write_text("old")
 
-    keeper = RunKeeper(["check"])
+    keeper = RunKeeper(["check"], ask_git)
     keeper.start_noting()
     Path("a").read_text()
     keeper._is_noting = False  # noqa: SLF001 - another process writes
     Path("a").write_text("new")
     keeper.keep(0)
-    assert RunKeeper(["check"]).repeat() is None
+    assert RunKeeper(["check"], ask_git).repeat() is None
 
 
 def test_what_changed_just_before_is_not_kept(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -274,9 +275,48 @@ def test_a_second_generate_says_the_same_again_until_a_made_file_changes() -> No
     assert not _archgen("generate", "ros2_launch", "-o", "out")[0]
 
 
+def _git(*words: str) -> None:
+    person = ("-c", "user.name=a", "-c", "user.email=a@example.com")
+    subprocess.run(["git", *person, *words], check=True, capture_output=True)  # noqa: S603, S607 - git of the path
+
+
+def test_a_build_says_the_same_again_until_an_output_changes() -> None:
+    Path("archgen.yaml").write_text(PROJECT)
+    _git("init", "-q")
+    _git("add", "archgen.yaml")
+    _git("commit", "-qm", "one")
+    words = ("build", "-o", "out", "--only", "packed")
+    # The second one finds a new file in the folder of the project, and the stamp that the first one left.
+    *_, last = _archgen(*words), _archgen(*words), _archgen(*words)
+    assert not last[0]
+    assert _archgen(*words) == (True, *last[1:])
+    Path("out/packed.yaml").unlink()
+    assert not _archgen(*words)[0]
+    assert Path("out/packed.yaml").is_file()
+
+
+def test_git_is_asked_again_for_nothing_but_commits_of_files() -> None:
+    _git("init", "-q")
+    plain = ("rev-parse", "--verify", "--quiet", "--end-of-options", "HEAD")
+
+    def ask() -> None:
+        run_git(Path(), *plain)
+
+    assert not _run(ask)
+    assert _run(ask)
+    _git("commit", "-q", "--allow-empty", "-m", "one")
+    assert not _run(ask)
+    record = next(Path(find_cache_path() or "").glob("*.run"))
+    record.write_text(record.read_text().replace(plain[1], "--output=made"))
+    assert not _run(ask)
+    assert not Path("made").exists()
+    assert not _run(lambda: run_git(Path(), "log", "--oneline"), ("generate",))
+    assert not _run(lambda: run_git(Path(), "log", "--oneline"), ("generate",))
+
+
 def test_a_run_that_fails_leaves_nothing_replaced(monkeypatch: pytest.MonkeyPatch) -> None:
     """What it said last, without an end of the line, is said."""
-    keeper = RunKeeper(["check"])
+    keeper = RunKeeper(["check"], ask_git)
     said = io.TextIOWrapper(io.BytesIO(), line_buffering=True)
     monkeypatch.setattr(sys, "stderr", said)
     keeper.start_noting()

@@ -11,6 +11,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from archgen.syntax import yaml_writer
+from archgen.syntax.yaml_parser import parse_yaml
+from archgen.syntax.yaml_tree import node_to_data
 
 _TEXT = st.text(st.characters(exclude_categories=["Cs"]), max_size=40)
 
@@ -34,6 +36,16 @@ def test_form() -> None:
         "empty: {}\n"
         "l: []\n"
     )
+
+
+def test_a_key_may_be_longer_than_yaml_takes_one_in_a_line() -> None:
+    data = {"k" * 1500: {"n: " * 400: [1], "c" * 1100: "a\nb\n"}}
+    text = yaml_writer.write_yaml(data, {("k" * 1500,): "said"})
+    assert pyyaml.safe_load(text) == data
+    document, diagnostics = parse_yaml("f", text)
+    assert not diagnostics
+    assert document is not None
+    assert node_to_data(document.root) == data
 
 
 def test_a_comment_stays_on_its_line_whatever_it_holds() -> None:

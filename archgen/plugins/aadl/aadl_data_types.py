@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import json
 import re
 from typing import Any
 
+from archgen.plugin.ros import parse_interface_definition
 from archgen.plugins.aadl.aadl_tree import AadlLink, AadlList, AadlName
 from archgen.plugins.aadl.archgen_words import find_own_text, read_own_words
 from archgen.plugins.aadl.classifier_names import KnownClassifier, find_only_implementations
@@ -37,6 +39,15 @@ _KEEPING_CLASSIFIERS = frozenset({"internal_state", "tf"})
 _TYPE_KEYS = {"comment": "description", "status": "status", "version": "version"}
 _FIELD_KEYS = {"default": "default_value", "unit": "unit_name", "comment": "description"}
 """Data of the library of components: they are hints of who has them, and no types."""
+
+
+def _has_default(type_name: str, text: str) -> bool:
+    """Whether a message may have a field of this type with this default."""
+    literal = json.dumps(text, ensure_ascii=False) if re.match(r"w?string(?!.*\[)", type_name) else text
+    definition = parse_interface_definition(f"{type_name} x {literal}", "a/msg/A", "", ros1=False)
+    return (
+        "/" not in type_name and "\n" not in text and not definition.diagnostics and bool(definition.interface.parts[0])
+    )
 
 
 class AadlDataTypes:
@@ -191,6 +202,10 @@ class AadlDataTypes:
             own_words = read_own_words(scope, (name,), _FIELD_KEYS)
             type_name = find_own_text(scope, (name,), "field_type") or type_name
             field_name = find_own_text(scope, (name,), "id") or _fold_field_name(part.written.name)
+            if "default" in own_words and not _has_default(type_name, own_words["default"]):
+                del own_words["default"]
+                words = f"`{part.written.name}` has a default that is none of its type"
+                self._resolver.notes.add_contradiction("Default_Value", words, part.written.span)
             if type_name:
                 fields[field_name] = {"type": type_name, **own_words} if own_words else type_name
         if not fields:

@@ -12,7 +12,7 @@ from collections.abc import Callable
 from typing import Any
 
 from archgen.plugin.importing import make_id
-from archgen.plugin.model import MEDIUM_NAMES
+from archgen.plugin.model import MEDIUM_NAMES, parse_quantity
 from archgen.plugins.aadl.aadl_tree import Path
 from archgen.plugins.aadl.archgen_words import find_own_text, read_component_words, read_port_words
 from archgen.plugins.aadl.element_hints import keep_sources, keep_structure, keep_thread
@@ -105,8 +105,7 @@ def _map_dispatch(scope: PropertyScope, path: Path) -> dict[str, Any]:
         words = f"a thread that is dispatched as `{protocol or 'this'}` has no behaviour here"
         scope.resolver.notes.add_counted(f"Dispatch_Protocol {protocol}", words, protocol_property.span)
     period = read_duration(scope.inherited_value(path, "period"))
-    rate = find_own_text(scope, path, "rate")
-    if rate:
+    if rate := _find_rate(scope, path):
         timing["rate"] = rate
     elif period and protocol in {"periodic", ""}:
         timing["period"] = period
@@ -118,6 +117,15 @@ def _map_dispatch(scope: PropertyScope, path: Path) -> dict[str, Any]:
         if found:
             scope.resolver.notes.add_counted(f"Period of a {protocol} thread", words, found.span)
     return timing
+
+
+def _find_rate(scope: PropertyScope, path: Path) -> str:
+    """Return the rate that archgen wrote, empty for none and for what is no rate."""
+    rate, said = find_own_text(scope, path, "rate"), scope.find(path, "archgen::rate")
+    if rate and said and not parse_quantity(rate, "frequency"):
+        scope.resolver.notes.add_contradiction("Rate", "this is no rate", said.span)
+        return ""
+    return rate
 
 
 def add_trigger(timing: dict[str, Any], ports: MappedPorts, triggering_ids: set[str], *, is_own: bool) -> None:

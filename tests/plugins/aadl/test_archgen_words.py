@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from tests.plugins.aadl.aadl_texts import import_package, import_text, merge_slices
+from tests.plugins.aadl.aadl_texts import import_package, import_text, merge_slices, tell_notes
 
 MODEL = """
 property set archgen is
@@ -141,3 +141,12 @@ def test_bytes_are_decoded(tmp_path: Path) -> None:
     properties = 'archgen::Title => "%22a%22 h%C3%B6he %zz %FF";'
     imported = import_package(tmp_path, f"process p features x: out data port; properties {properties} end p;")
     assert merge_slices(imported)["component_types"]["p"]["title"] == '"a" höhe %zz \ufffd'
+
+
+def test_what_no_field_and_no_thread_can_have_is_not_taken(tmp_path: Path) -> None:
+    text = MODEL.replace('=> "0.5"', '=> "half"').replace('"15 Hz"', '"15 z"')
+    imported = import_text(tmp_path, text)
+    assert "half" not in str(imported.slices)
+    assert "15 z" not in str(imported.slices)
+    told = [note for note in tell_notes(imported) if "none of its type" in note or "is no rate" in note]
+    assert len(told) == text.count("15 z") + 1

@@ -32,6 +32,8 @@ from archgen.plugins.ros.launch.launch_values import (
 
 _MAX_SHOWN = 12
 _VARIABLE_WITHOUT_VALUE = re.compile(r"\$\(env (\w+)\)")
+_MAX_NAME = 255
+"""No name of something that is remapped is longer."""
 
 
 @dataclass(slots=True)
@@ -192,8 +194,9 @@ class ScopeRun:
         own_name, name = (self.context.resolve(part) for part in pair)
         if isinstance(own_name, UnknownValue) or isinstance(name, UnknownValue):
             self.tell_computed(action, what, next(each for each in (own_name, name) if isinstance(each, UnknownValue)))
-        elif not own_name:
-            self.add_note(action.word, f"a remap to `{name}` does not say of what", action.span)
+        elif not 0 < len(own_name) <= _MAX_NAME:
+            said = "is of a longer name than any" if own_name else "does not say of what"
+            self.add_note(action.word, f"a remap to `{name}` {said}", action.span)
         else:
             return (clean_name(own_name), clean_name(name)) if self.context.is_ros_1 else (own_name, name)
         return None

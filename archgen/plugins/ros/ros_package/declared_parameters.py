@@ -62,7 +62,7 @@ def read_declared_parameters(
     parameters: dict[str, Any] = {}
     open_sets: list[str] = []
     for entry in mapping if depth < _MAX_DEPTH else ():
-        if entry.key.startswith("__map_"):
+        if entry.key.startswith("__map_") and (not outer or is_parameter_name(outer.removesuffix("."))):
             open_sets.append(outer.removesuffix(".") or "*")
             words = f"the parameters below `{entry.key}` stand once for each name in a list: any are accepted"
             account.add_note("__map_", words, entry.key_span, fate="noted")
