@@ -83,10 +83,8 @@ def test_queues_hold_one_sample_but_for_the_ends(architecture: Architecture) -> 
 
 
 def test_the_message_has_4096_bytes_and_4_in_front(architecture: Architecture) -> None:
-    assert (
-        message_sizes.compute_message_size("reference_interfaces/msg/Message4kb", architecture.interfaces).bytes
-        == 4096 + 4
-    )
+    query = message_sizes.make_size_query(architecture)
+    assert query("reference_interfaces/msg/Message4kb", None).bytes == 4096 + 4
     assert message_sizes.make_byte_query(architecture)("reference_interfaces/msg/Message4kb", "Sample") == 4096
 
 

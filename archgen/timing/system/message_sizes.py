@@ -136,11 +136,6 @@ SizeQuery = Callable[[str | None, str | None], MessageSize]
 """Maps a message and the conceptual type that it carries (None where not named) to a size."""
 
 
-def compute_message_size(message: str, interfaces: Interfaces) -> MessageSize:
-    """Compute the size of `pkg/msg/Name`, or of a message that ROS 2 generates (`pkg/srv/Name_Request`)."""
-    return _SizeComputer(interfaces).message_size(message)
-
-
 def make_size_query(architecture: Architecture) -> SizeQuery:
     """Return the function that finds a message's size and its reason. A `size` written at the type takes precedence.
 

@@ -8,7 +8,7 @@ from fractions import Fraction
 
 from archgen.model.component import Component, Group
 from archgen.model.component_nesting import list_surrounding
-from archgen.views import inline_text, timing_words
+from archgen.views import inline_text, requirement_servers, timing_words
 from archgen.views.element_references import place_run
 from archgen.views.elements import port_tables
 from archgen.views.elements.annotation_facts import list_annotation_facts, list_contact_facts, make_image_blocks
@@ -227,7 +227,7 @@ def make_requirement_blocks(lookup: Lookup, component: Component) -> list[Block]
         message = "It serves no requirement." if component.requirements_known else "Its requirements are not known yet."
         return [Paragraph(inline_text.to_inlines(Text("Requirements. ", strong=True), Text(message, muted=True)))]
     items = tuple(
-        inline_text.requirement_link(lookup.architecture, use.text) if use.is_id else inline_text.to_inlines(use.text)
+        requirement_servers.judged_link(lookup, use.text) if use.is_id else inline_text.to_inlines(use.text)
         for use in component.requirements
     )
     return [Paragraph(inline_text.to_inlines(Text("Requirements", strong=True))), Bullets(items)]

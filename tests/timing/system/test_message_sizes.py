@@ -88,9 +88,13 @@ def sent(store: Store, name: str, *, ros1: bool) -> int:
     return len((store.serialize_ros1 if ros1 else store.serialize_cdr)(message(store, name), name))
 
 
+def size_of(name: str, held: Interfaces) -> message_sizes.MessageSize:
+    return message_sizes.make_size_query(Architecture(ProjectInfo("robot", "Robot"), interfaces=held))(name, None)
+
+
 def compare(held: Interfaces, store: Store, *, ros1: bool) -> tuple[dict[str, int | None], dict[str, int]]:
     names = [name for name in store.fielddefs if fixed(store, name)]
-    ours = {name: message_sizes.compute_message_size(name, held).bytes for name in names}
+    ours = {name: size_of(name, held).bytes for name in names}
     return ours, {name: sent(store, name, ros1=ros1) for name in names}
 
 
@@ -116,7 +120,7 @@ def test_the_definitions_that_ship_give_the_same(distro: str) -> None:
 def test_every_other_message_is_unknown_or_bounded(which: Stores) -> None:
     store, distro = get_typestore(which), which.value.partition("_")[2]
     held = known(store, distro)
-    assert not [n for n in store.fielddefs if not fixed(store, n) and message_sizes.compute_message_size(n, held).exact]
+    assert not [n for n in store.fielddefs if not fixed(store, n) and size_of(n, held).exact]
 
 
 def defined(text: str, distro: str = "jazzy") -> Interfaces:
@@ -159,13 +163,13 @@ def defined(text: str, distro: str = "jazzy") -> Interfaces:
     ],
 )
 def test_sizes_by_hand(fields: str, bytes_: int | None, *, exact: bool, why: str) -> None:
-    found = message_sizes.compute_message_size("demo_msgs/msg/A", defined(f"demo_msgs/msg/A: {fields}"))
+    found = size_of("demo_msgs/msg/A", defined(f"demo_msgs/msg/A: {fields}"))
     assert found == message_sizes.MessageSize(bytes_, exact, why)
 
 
 def test_ros_1_has_no_header_and_no_gaps() -> None:
     held = defined("demo_msgs/msg/A: uint8 a; float64 b; time c; std_msgs/Empty d", "noetic")
-    assert message_sizes.compute_message_size("demo_msgs/msg/A", held).bytes == 17
+    assert size_of("demo_msgs/msg/A", held).bytes == 17
 
 
 def test_services_and_actions_are_asked_part_by_part() -> None:
@@ -176,7 +180,7 @@ def test_services_and_actions_are_asked_part_by_part() -> None:
         """
     )
     found = {
-        name: message_sizes.compute_message_size(f"demo_msgs/{name}", held).bytes
+        name: size_of(f"demo_msgs/{name}", held).bytes
         for name in (
             "srv/Weigh_Request",
             "srv/Weigh_Response",
@@ -190,17 +194,14 @@ def test_services_and_actions_are_asked_part_by_part() -> None:
         )
     }
     assert list(found.values()) == [5, 12, None, 8, 24, 16, 20, 6, 24]
-    assert (
-        message_sizes.compute_message_size("demo_msgs/srv/Weigh", held).why
-        == "`demo_msgs/srv/Weigh` is several messages"
-    )
+    assert size_of("demo_msgs/srv/Weigh", held).why == "`demo_msgs/srv/Weigh` is several messages"
 
 
 def test_definitions_may_be_nested_deeply_and_grow_without_bound() -> None:
     lines = [f"demo_msgs/msg/A{n}: demo_msgs/A{n + 1}[9] a" for n in range(3000)]
     held = defined("\n".join([*lines, "demo_msgs/msg/A3000: uint8 a"]))
-    assert message_sizes.compute_message_size("demo_msgs/msg/A2990", held).bytes == 4 + 9**10
-    assert message_sizes.compute_message_size("demo_msgs/msg/A0", held).bytes is None
+    assert size_of("demo_msgs/msg/A2990", held).bytes == 4 + 9**10
+    assert size_of("demo_msgs/msg/A0", held).bytes is None
 
 
 def test_what_passes_between_writers_and_readers() -> None:

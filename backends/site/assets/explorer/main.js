@@ -18,7 +18,7 @@
 
   const store = archgenExplorer.makeState((problems) => render(problems ?? []), begin);
   const { state } = store;
-  const actions = { state, colours, level: () => level, change: store.change, step, save, say: (text) => sayOnce(text), toggleAll, toggle, openHome, showAll, showWays, focus: focusOn,
+  const actions = { state, colours, level: () => level, change: store.change, step, save, say: (text) => sayOnce(text), toggleAll, toggle, openHome, showAll, showLonger, showWays, focus: focusOn,
     pick, pickBox, pickArrow, pickedName: () => (choice.picked?.kind === "host" ? "" : choice.picked?.id ?? "") };
   const camera = archgenExplorer.makeCamera(stage, map, (view) => minimap.follow(view), ({ x, y, zoom }) => store.moved([x, y, zoom]));
   const minimap = archgenExplorer.makeMinimap(camera, stage);
@@ -75,7 +75,7 @@
     const litBoxes = light.show({ scene, lit: choice.lit, pickedArrow });
     minimap.draw(scene, bounds);
     legend.draw(scene, colouring, Boolean(choice.lit || choice.picked));
-    legend.say(scene, choice.selection?.problems ?? [], hints);
+    legend.say(scene, choice, hints);
     list.draw(scene, state.list);
     stage.classList.toggle("gone", state.list);
     tools.update({ state, ...choice, shownCount, homes: level.homes });
@@ -223,6 +223,10 @@
 
   function showAll() {
     store.change({ full: true });
+  }
+
+  function showLonger() {
+    store.change({ ways: !state.ways, at: null });
   }
 
   function focusOn(name, before, after) {
