@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import io
-import json
 import re
 import zipfile
 from collections.abc import Iterator
@@ -16,7 +15,16 @@ import pytest
 from lxml import etree
 
 _WORD = "{http://schemas.openxmlformats.org/wordprocessingml/2006/main}"
-_FACTORS = {"ns": 1, "us": 10**3, "µs": 10**3, "ms": 10**6, "s": 10**9, "Hz": 1, "kHz": 1000, "%": Fraction(1, 100)}
+_FACTORS: dict[str, int | Fraction] = {
+    "ns": 1,
+    "us": 10**3,
+    "µs": 10**3,
+    "ms": 10**6,
+    "s": 10**9,
+    "Hz": 1,
+    "kHz": 1000,
+    "%": Fraction(1, 100),
+}
 _FIGURE = re.compile(r"(>=|≥|at least|<=|≤)?\s*~?([0-9.]+)\s?(ns|us|µs|ms|s|Hz|kHz|%)(?![\w/])")
 Rows = list[list[str]]
 
@@ -98,7 +106,7 @@ def read_figure(text: str) -> tuple[str, Fraction] | None:
     if not found:
         return None
     sign = {">=": ">", "≥": ">", "at least": ">", "<=": "<", "≤": "<"}.get(found[1] or "", "")
-    return sign, Fraction(found[2]) * _FACTORS[found[3]]
+    return sign, Fraction(found[2]) * Fraction(_FACTORS[found[3]])
 
 
 class Agreement:
@@ -177,8 +185,3 @@ class Agreement:
             return
         if shown != known and not (shown.startswith("seen +") and known == "missed"):
             self.faults.append(f"{where}: verdict {said!r}, known {known!r}")
-
-
-def read_json(text: str) -> Any:  # noqa: ANN401 - whatever it holds
-    """Return what is written as JSON."""
-    return json.loads(text)

@@ -7,7 +7,7 @@ import json
 import random
 from typing import Any
 
-_HOSTS = (
+_HOSTS: tuple[dict[str, Any], ...] = (
     {"cores": 2},
     {"cores": 4, "scheduling": "fair"},
     {"cores": 2, "scheduling": {"fair": {"slice": "3 ms", "tick": "1 ms", "lead": 5, "other_load": "10 %"}}},

@@ -116,6 +116,10 @@ def _make_name_cell(lookup: Lookup, component: Component, inside_of: str | None)
     return (*place, link, Text(f" ({inline_text.count_noun(len(inside), 'component')})", muted=True))
 
 
+_MAX_SENTENCE = 300
+"""A sentence in a row of a table is cut there."""
+
+
 def first_sentence(markdown: str | None) -> str | None:
     """Return the first sentence of a Markdown text, on one line; None for no text."""
     if not markdown:
@@ -123,7 +127,7 @@ def first_sentence(markdown: str | None) -> str | None:
     line = " ".join(markdown.split("\n\n")[0].split())
     # A full stop counts only before a blank or the end, so that "0.5 m" and "ROS2.x" stay whole.
     end = next((i for i, c in enumerate(line) if c in ".!?" and line[i + 1 : i + 2] in {"", " "}), len(line) - 1)
-    return line[: end + 1]
+    return inline_text.cut_text(line[: end + 1], _MAX_SENTENCE)
 
 
 def describe_purpose(markdown: str | None) -> Inlines:

@@ -40,13 +40,15 @@
   document.querySelector("main").append(element("div", { className: "explorer" }, tools.bar,
     element("div", { className: "desk" }, stage, list.root, panel.panel), status, keys.dialog));
 
-  // Without an address: what is readable with its groups open needs no click to show what is inside.
-  const MANY_BOXES = 30, NARROW = 720; // px
+  // Without an address: what is readable with its groups open needs no click to show what is inside; what no telephone shows
+  // in a readable size begins as a list.
+  const MANY_BOXES = 30, MANY_HOMES = 20, NARROW = 720; // px
   function begin(first) {
     if (!model.components.length) first.level = "nodes";
     const { homes, children } = levelOf(first.level);
     const count = homes.reduce((sum, home) => sum + children.get(home).length, 0);
     if (count <= MANY_BOXES && innerWidth > NARROW) first.open = ["*"];
+    first.list = homes.length > MANY_HOMES && innerWidth <= NARROW;
   }
 
   // --- from the address to the screen ---------------------------------------------------------------------------
