@@ -8,7 +8,6 @@ from pathlib import Path
 from typing import Any
 
 from archgen.frozen import dataclass, fields
-from archgen.importers.foreign_import import ForeignImport
 from archgen.installed_plugins import (
     IMPORTERS,
     PluginEntry,
@@ -19,9 +18,6 @@ from archgen.installed_plugins import (
     load_object,
     load_shipped_object,
 )
-
-ForeignReader = Callable[..., ForeignImport]
-"""Takes the files, and by name the launch arguments and the known ids where its format has such."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -33,11 +33,6 @@ class WorkBudget:
         """How many steps there are."""
         return self._left if self._around is None else min(self._left, self._around.left)
 
-    @property
-    def paid(self) -> int:
-        """How many steps were taken."""
-        return self.steps - self._left
-
     def add(self, steps: int) -> None:
         """Give more steps, for more that is read."""
         self.steps += steps

@@ -121,6 +121,7 @@ def render_comparison_svg(comparison: Comparison, options: OutputOptions) -> byt
     Raise OutputError where there is nothing to draw.
     """
     from archgen.emit import file_tree
+    from archgen.emit.picture_files import embed_fonts
     from archgen.emit.site import page_pictures as files
     from archgen.products.product_writing import draw_or_warn
     from archgen.views.graphs import changes as pictures
@@ -134,7 +135,7 @@ def render_comparison_svg(comparison: Comparison, options: OutputOptions) -> byt
     if picture is None or picture.svg is None:
         raise file_tree.OutputError("the picture could not be drawn")
     # There is no page to link to: every link of the picture is dropped.
-    return files.standalone_svg(picture.svg, lambda _anchor: None)
+    return files.standalone_svg(picture.svg, lambda _anchor: None, embed_fonts([picture.svg]))
 
 
 def compare_since(revision: str, path: Path | None, checked_project: CheckedProject) -> SiteChanges:

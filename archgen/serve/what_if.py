@@ -94,7 +94,7 @@ def _compare_chains(lookup: Lookup, present: TimingLookup, changed: TimingLookup
 def _describe_chain(result: ChainResult) -> JsonObject:
     return {
         "figure": shorten_figures(value_format.display_duration(result.bound)),
-        "status": result.verdict if not chain_status.lacks_only_deadline(result) else "",
+        "status": result.verdict if not chain_status.lacks_deadline(result) else "",
         "margin": shorten_figures(chain_status.describe_margin(result)),
     }
 

@@ -91,6 +91,13 @@ def list_verifiers(lookup: Lookup, requirement: Requirement) -> Iterator[Inlines
             yield (Text(verification.text),)
 
 
+def judged_link(lookup: Lookup, requirement_id: str) -> Inlines:
+    """Link to a requirement, followed by its title and its state."""
+    requirement = lookup.architecture.requirements.get(requirement_id)
+    link = inline_text.requirement_link(lookup.architecture, requirement_id)
+    return (*link, Text(" "), state_chip(lookup, requirement)) if requirement else link
+
+
 def state_chip(lookup: Lookup, requirement: Requirement) -> Text:
     """Return the state of a requirement as a chip: met, open, missed or uncovered."""
     state = lookup.requirement_trace.judge(requirement.id)

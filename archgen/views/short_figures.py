@@ -1,7 +1,7 @@
 """Quantities in texts with three significant digits: 7.23 s for 7223.333 ms. What bounds from one side stays true.
 
-The only place that decides how a shown figure is rounded: as its sign says; a time without a sign is one that nothing takes
-longer than, and is rounded up; all else, what `~` calls rounded, and a period behind its rate, to the nearest.
+The only place that decides how a shown figure is rounded: as its sign says; what was seen or is sure, down; another time without
+a sign is one that nothing takes longer than, and is rounded up; all else, what `~` calls rounded, and a period behind its rate, to the nearest.
 """
 
 from __future__ import annotations
@@ -15,6 +15,8 @@ QUANTITY = re.compile(rf"(?<![\w.])([<>]= |~)?([0-9]+(?:\.[0-9]+)?) ({_UNITS})(?
 _COMPARISON = re.compile(r"([<>])=[ \u00a0](?=[+-]?[0-9])")
 _DIGITS = 3
 _PERIOD_LEAD = " Hz · "
+_LEAST_LEAD = re.compile(r"\b(?:took|at least) (?:~?[0-9.]+ \w+, )?$")
+"""What stands before a time that was seen or is sure, and before by how much that is too long: `it took 132 ms, 72 ms longer`."""
 _DURATION_UNITS = frozenset({"ns", "us", "ms", "s"})
 
 
@@ -30,7 +32,8 @@ def shorten_match(match: re.Match[str], *, is_lower: bool = False) -> tuple[str,
     """
     sign, unit, value = match[1] or "", match[3], Decimal(match[2])
     is_period = match.string.endswith(_PERIOD_LEAD, 0, match.start())
-    rounding_sign = sign or (">" if is_lower else "~" if is_period else "<" if unit in _DURATION_UNITS else "")
+    is_least = is_lower or bool(_LEAST_LEAD.search(match.string, max(match.start() - 30, 0), match.start()))
+    rounding_sign = ">" if is_least else sign or ("~" if is_period else "<" if unit in _DURATION_UNITS else "")
     if unit == "ms" and value >= 1000:  # noqa: PLR2004 - more digits than three are none that count
         value, unit = value / 1000, "s"
     return sign, round_number(value, rounding_sign), unit

@@ -96,6 +96,18 @@ def test_the_figures_say_how_much_and_why_not_more(tmp_path: Path) -> None:
     ]
 
 
+def test_a_chain_without_a_deadline_has_no_verdict_also_where_figures_are_missing(tmp_path: Path) -> None:
+    lookup = look_up(tmp_path, ROBOT.replace(", deadline: 3 s", ""))
+    assert lookup.timing is not None
+    owed = next(result for result in lookup.timing.chains if result.id == "owed")
+    assert (owed.verdict, owed.bound.complete) == ("open", False)
+    assert read(chain_status.verdict_chip(owed)) == "no deadline"
+    figure = dashboard.make_dashboard(lookup, DocumentEdition()).figures[1]
+    assert (figure.value, figure.total, read(figure.note)) == ("2", "4", "2 missed")
+    # Its figures are still missing, and somebody is to write them.
+    assert owed in timing_verdicts.list_silent_chains(lookup)
+
+
 def test_open_points_count_findings_and_the_chains_that_none_is_about(tmp_path: Path) -> None:
     lookup = look_up(tmp_path)
     board = dashboard.make_dashboard(lookup, DocumentEdition())

@@ -106,4 +106,4 @@ def test_the_page_of_a_node_names_the_requirements_of_its_components(tmp_path: P
     for node in lookup.architecture.nodes.values():
         (facts,) = (each for each in make_node_blocks(lookup, node) if isinstance(each, Facts))
         shown[node.id] = {title: text(value) for title, value in facts.rows}.get("Requirements")
-    assert shown == {"n": "R-1 It stops, R-2 It goes", "m": None}
+    assert shown == {"n": "R-1 It stops met, R-2 It goes met", "m": None}

@@ -42,6 +42,12 @@ def test_upper_bounds_are_rounded_up(text: str, shown: str) -> None:
 
 def test_what_is_at_least_so_much_is_rounded_down() -> None:
     assert split_figures("124.9999 ms", is_lower=True) == [("", ""), ("124.9999 ms", "124 ms"), ("", "")]
+    # What was seen, and by how much that is too long: the margin beside it says `seen +1.82 s`.
+    run = "In a run it took 1832.4 ms, 1827.4 ms longer than its deadline of 5 ms allows"
+    assert shorten_text(run) == "In a run it took 1.83 s, 1.82 s longer than its deadline of 5 ms allows"
+    assert shorten_text(run.replace("took", "may take")) == run.replace("took", "may take").replace(
+        "1832.4 ms, 1827.4 ms", "1.84 s, 1.83 s"
+    )
 
 
 @pytest.mark.parametrize(

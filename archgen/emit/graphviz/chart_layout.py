@@ -304,9 +304,10 @@ def style_stretch(stretch: BarSegment, width: float) -> DotAttributes:
     }
 
 
-def style_stretch_form(form: str, width: float) -> DotAttributes:
-    """Return the attributes of an empty stretch of one form, `width` in points."""
-    style, fill, _ = STRETCH_FORMS[form]
+def style_stretch_form(form: str, width: float, fill: str = "") -> DotAttributes:
+    """Return the attributes of an empty stretch of one form, `width` in points; with another fill than the form has."""
+    style, form_fill, _ = STRETCH_FORMS[form]
+    fill = fill or form_fill
     rim = palette.RIM if ":" in fill else palette.rim_colour_on(fill)
     return {
         **fix_node_size(width, BAR_HEIGHT),

@@ -326,10 +326,14 @@ def _style_bar(bar: SheetBar) -> DotAttributes:
     }
 
 
+def _style_hatched_bar(bar: SheetBar) -> DotAttributes:
+    """Return the attributes of what is unknown: stripes without a rim, which would make boxes of a bar so low."""
+    stripes = f"{palette.PAPER}:{palette.NEIGHBOUR_FRAME}"
+    return {**style_stretch_form("unknown", bar.width, stripes), "style": '"striped"', "color": '"transparent"'}
+
+
 def _draw_bar(at: int, bar: SheetBar, resolve_link: LinkResolver) -> ScenePart:
-    attributes = _style_bar(bar)
-    if bar.fill == "unknown":
-        attributes = style_stretch_form("unknown", bar.width)
+    attributes = _style_hatched_bar(bar) if bar.fill == "unknown" else _style_bar(bar)
     ink = palette.text_colour_on(_COLOURS[bar.fill])
     label = f'<<FONT POINT-SIZE="8.5" COLOR="{ink}"><B>{escape_label(bar.label)}</B></FONT>>' if bar.label else '""'
     attributes |= fix_node_size(bar.width, bar.height) | {"label": label, "shape": '"box"'}

@@ -147,7 +147,7 @@ class PageWriter:
         elif run.status or run.change or self.standalone:
             html = self._write_text(run)
         else:
-            html = write_figures(run.text)  # most runs: a call of `_write_text` costs as much
+            html = write_figures(run.text, is_lower=run.is_lower)  # most runs: a call of `_write_text` costs as much
         if run.strong and not run.status:
             html = f"<strong>{html}</strong>"
         if run.emphasis:

@@ -305,7 +305,7 @@ class SectionWriter:
                 inline_text.to_inlines(Text(self.lookup.architecture.chains[chain.id].title, ref=f"chain:{chain.id}")),
                 timing_tables.deadline_cell(chain),
                 timing_tables.duration_cell(chain.bound),
-                inline_text.to_inlines(Text(chain.verdict, strong=chain.verdict != "met")),
+                inline_text.to_inlines(Text(chain.verdict, strong=chain.verdict != "met")) if chain.deadline else (),
             )
             for chain in interface_terms.chains
         )

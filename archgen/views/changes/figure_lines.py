@@ -232,12 +232,18 @@ def write_limit_lines(comparison: Comparison) -> Iterator[FigureLine]:
     """Yield a line for each promise and each freshness that is kept otherwise than before, where no break says so."""
     told = {each.fallen for change in comparison.changes for each in change.breaks}
     noise = comparison.after.architecture.review.noise
+    readers: dict[tuple[str, str], list[str]] = {}
     for limit in comparison.limits:
         words = _WORDS.get((limit.old_state, limit.new_state))
         is_silent = limit.new_state == "broken" and not _is_worse(limit, noise)
         if words and not is_silent and (limit.port, limit.key) not in told:
             lead = "warning: " if limit.has_fallen else ""
-            yield FigureLine("changed", f"{lead}{words.format(describe_limit(limit))} ({describe_growth(limit)})")
+            sentence = f"{lead}{words.format(describe_limit(limit))}"
+            readers.setdefault((sentence, describe_growth(limit)), []).append(limit.reader)
+    for (sentence, growth), names in readers.items():
+        # An age is told where it is read; readers of whom the same holds stand in one line.
+        where = f", where {tick_names(names, 3)} read{'s' * (len(names) == 1)} it" if any(names) else ""
+        yield FigureLine("changed", f"{sentence}{where} ({growth})")
 
 
 def _is_worse(limit: LimitChange, noise: Fraction) -> bool:

@@ -8,7 +8,7 @@ from fractions import Fraction
 
 from archgen.model.component import Component, Group
 from archgen.model.component_nesting import list_surrounding
-from archgen.views import inline_text, timing_words
+from archgen.views import inline_text, requirement_servers, timing_words
 from archgen.views.element_references import place_run
 from archgen.views.elements import port_tables
 from archgen.views.elements.annotation_facts import list_annotation_facts, list_contact_facts, make_image_blocks
@@ -116,6 +116,10 @@ def _make_name_cell(lookup: Lookup, component: Component, inside_of: str | None)
     return (*place, link, Text(f" ({inline_text.count_noun(len(inside), 'component')})", muted=True))
 
 
+_MAX_SENTENCE = 300
+"""A sentence in a row of a table is cut there."""
+
+
 def first_sentence(markdown: str | None) -> str | None:
     """Return the first sentence of a Markdown text, on one line; None for no text."""
     if not markdown:
@@ -123,7 +127,7 @@ def first_sentence(markdown: str | None) -> str | None:
     line = " ".join(markdown.split("\n\n")[0].split())
     # A full stop counts only before a blank or the end, so that "0.5 m" and "ROS2.x" stay whole.
     end = next((i for i, c in enumerate(line) if c in ".!?" and line[i + 1 : i + 2] in {"", " "}), len(line) - 1)
-    return line[: end + 1]
+    return inline_text.cut_text(line[: end + 1], _MAX_SENTENCE)
 
 
 def describe_purpose(markdown: str | None) -> Inlines:
@@ -227,7 +231,7 @@ def make_requirement_blocks(lookup: Lookup, component: Component) -> list[Block]
         message = "It serves no requirement." if component.requirements_known else "Its requirements are not known yet."
         return [Paragraph(inline_text.to_inlines(Text("Requirements. ", strong=True), Text(message, muted=True)))]
     items = tuple(
-        inline_text.requirement_link(lookup.architecture, use.text) if use.is_id else inline_text.to_inlines(use.text)
+        requirement_servers.judged_link(lookup, use.text) if use.is_id else inline_text.to_inlines(use.text)
         for use in component.requirements
     )
     return [Paragraph(inline_text.to_inlines(Text("Requirements", strong=True))), Bullets(items)]

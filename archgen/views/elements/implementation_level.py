@@ -8,7 +8,7 @@ from archgen.derivation.wire.wire_names import list_written_remaps
 from archgen.model.component_nesting import find_component
 from archgen.model.node import Endpoint, Node
 from archgen.model.port_media import ROS
-from archgen.views import element_references, inline_text, timing_words
+from archgen.views import element_references, inline_text, requirement_servers, timing_words
 from archgen.views.elements.annotation_facts import list_annotation_facts
 from archgen.views.elements.parameter_blocks import make_effective_table
 from archgen.views.lookup import Lookup
@@ -78,7 +78,7 @@ def list_node_facts(lookup: Lookup, node: Node) -> list[Fact]:
         Fact(
             "requirements",
             "Requirements",
-            inline_text.join_inlines(inline_text.requirement_link(architecture, each) for each in requirement_ids),
+            inline_text.join_inlines(requirement_servers.judged_link(lookup, each) for each in requirement_ids),
         ),
         Fact("ros_name", "ROS name", () if node.is_program else inline_text.to_code(node.full_name)),
         Fact("kind", "Kind, status", inline_text.to_inlines(f"{kind}, ", *inline_text.value_or_unknown(node.status))),

@@ -88,6 +88,7 @@ class _Canvas:
         """Return the sheet, with what is to be known of its figures."""
         architecture = lookup.architecture
         notes = ["A cell is a core, filled by what is pinned to it; pale ones share the rest. Figures are rounded up."]
+        notes[0] += " Hatched is what nobody knows." if any(bar.fill == "unknown" for bar in self.bars) else ""
         notes += ["■ runs in a container, a process of several nodes."] if architecture.containers else []
         if crossings:
             notes.append(

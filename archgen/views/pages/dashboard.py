@@ -99,7 +99,7 @@ def _list_some(names: Sequence[str], singular: str, plural: str) -> str:
 
 
 def _chain_figure(lookup: Lookup) -> KeyFigure:
-    results = [r for r in lookup.timing.chains if not chain_status.lacks_only_deadline(r)] if lookup.timing else []
+    results = [r for r in lookup.timing.chains if not chain_status.lacks_deadline(r)] if lookup.timing else []
     counts = {name: sum(r.verdict == name for r in results) for name in ("missed", "not proven", "open")}
     worst = next((name for name, count in counts.items() if count), "met")
     words = [f"{count} {name}" for name, count in counts.items() if count]
@@ -128,7 +128,7 @@ def _chain_card(lookup: Lookup) -> DashboardCard | None:
             inline_text.to_inlines(Text(lookup.architecture.chains[result.id].title, ref=f"chain:{result.id}")),
             chain_status.chain_meter(result),
             timing_tables.duration_cell(result.bound),
-            timing_tables.deadline_cell(result),
+            timing_tables.deadline_cell(result, is_narrow=True),
             chain_status.margin_cell(result),
             chain_status.verdict_chip(result),
         )

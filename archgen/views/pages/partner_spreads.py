@@ -457,10 +457,10 @@ def _group_by(interfaces: Iterable[InterfaceTerms], side: int) -> Mapping[str, l
 
 
 def _count_interfaces(interfaces: Sequence[InterfaceTerms], other: int) -> str:
-    """Count outputs and partners: `19 to 5 partners`."""
-    outputs = {terms.interface.key for terms in interfaces}
+    """Count interfaces and partners: `19 to 5 partners`; as the matrix does, an output to two partners is two of them."""
     partners = {terms.interface.pair[other] for terms in interfaces}
-    return f"{len(outputs)} {'to' if other else 'from'} {count_noun(len(partners), 'partner')}" if outputs else "·"
+    count, way = len(interfaces), "to" if other else "from"
+    return f"{count} {way} {count_noun(len(partners), 'partner')}" if count else "·"
 
 
 def _count_promised(interfaces: Sequence[InterfaceTerms], keys: tuple[str, ...]) -> Inlines:

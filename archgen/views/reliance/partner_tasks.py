@@ -140,10 +140,9 @@ def _list_chains(lookup: Lookup, partner: str) -> Iterator[Task]:
             asked = (
                 f"Bring `{chain.id}` below its" if result.verdict == "missed" else f"Show that `{chain.id}` meets its"
             )
-            # One without a deadline has none to keep: its figures are missing.
-            lead = f"{asked} deadline" if chain.deadline_text else f"Complete the figures of `{chain.id}`"
+            text = f"{asked} deadline: {chip}{f'; {missing}' if missing else ''}"
             deadlines = (chain.id,) if chain.deadline_text else ()
-            text = f"{lead}: {chip}{f'; {missing}' if missing else ''}"
+            text = text if deadlines else f"Complete the figures of `{chain.id}`: {missing or 'no bound found'}"
             yield Task("chain", text, deadlines, chain.requirements, (), chain.at)
 
 

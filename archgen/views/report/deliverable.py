@@ -39,7 +39,6 @@ from archgen.views.shapes import (
     Outline,
     Paragraph,
     Section,
-    Status,
     Table,
     Text,
     Waterfall,
@@ -251,7 +250,7 @@ class DeliverablePrinter:
             return
         verdict = chain_charts.describe_chain_verdict(result, timing)
         head, mark, rest = verdict.partition(": " if verdict.startswith(("Met: ", "Open: ")) else ". ")
-        status: Status = result.verdict
+        status = chain_status.find_status(result)
         yield Paragraph(
             (Text(f"{head}{mark.strip()}", status=status), Text(" "), *inline_text.message_to_inlines(rest))
         )

@@ -163,7 +163,7 @@ def _list_short_signs(lookup: Lookup) -> Iterator[FactRow]:
     """Yield what the columns and the verdicts mean, those that the architecture has."""
     for name, words in _SHORT_SIGNS:
         yield name, inline_text.to_inlines(words)
-    verdicts = {result.verdict for result in (lookup.timing.chains if lookup.timing else ())}
+    verdicts = {result.verdict for result in (lookup.timing.chains if lookup.timing else ()) if result.deadline}
     for word, meaning in VERDICT_MEANINGS.items():
         if word in verdicts:
             yield word, inline_text.to_inlines(meaning)

@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 
 from archgen.diagnostics import join_first
-from archgen.model.component import Component
 from archgen.model.requirement import Requirement
 from archgen.views import inline_text, requirement_servers
 from archgen.views.lookup import Lookup
@@ -23,13 +22,10 @@ def make_requirements(lookup: Lookup) -> Iterator[Section]:
     requirements = requirement_tables.shown_requirements(lookup)
     if not requirements:
         return
-    # Of those that are met, what a chain proves comes before what a trial has to show.
+    # What a chain proves comes before what a trial has to show.
     ranked = sorted(
         requirements,
-        key=lambda each: (
-            _STATE_RANKS[_judge(lookup, each)],
-            each.id not in lookup.chains_for_requirement and not each.verified_by,
-        ),
+        key=lambda each: (_STATE_RANKS[_judge(lookup, each)], not _list_proofs(lookup, each)),
     )
     shown = ranked if len(ranked) <= _MAX_REQUIREMENTS else [each for each in ranked if _judge(lookup, each) != "met"]
     shown = shown[:_MAX_REQUIREMENTS]
@@ -51,6 +47,8 @@ def _judge(lookup: Lookup, requirement: Requirement) -> str:
     state = lookup.requirement_trace.judge(requirement.id)
     chains = lookup.chains_for_requirement.get(requirement.id, ())
     verdicts = [requirement_servers.describe_chain_state(lookup, each) for each in chains]
+    if state == "met" and not (_list_proofs(lookup, requirement) or _list_trials(lookup, requirement)):
+        return "open"
     return "not proven" if state == "open" and "not proven" in verdicts else state
 
 
@@ -65,26 +63,33 @@ def _trace_requirement(lookup: Lookup, requirement: Requirement) -> tuple[Inline
         inline_text.to_inlines(requirement.title),
         by,
         inline_text.join_inlines(requirement_tables.use_case_link(lookup, name) for name in requirement.use_cases),
-        _prove(lookup, requirement, servers),
+        _prove(lookup, requirement),
     )
 
 
-def _prove(lookup: Lookup, requirement: Requirement, servers: Sequence[Component]) -> Inlines:
+def _prove(lookup: Lookup, requirement: Requirement) -> Inlines:
     """Return what proves a requirement: the verdict of a chain, what verifies it, else the figures of a trial."""
     if not requirement_servers.is_served(lookup, requirement):
         return (Text("nobody serves it", status="uncovered"),)
+    if lines := _list_proofs(lookup, requirement):
+        return inline_text.join_lines(lines)
+    told = _list_trials(lookup, requirement)
+    words = f"to be tried: {join_first(told, 1)}" if told else "nothing says what shows it"
+    return (Text(words, muted=True),)
+
+
+def _list_proofs(lookup: Lookup, requirement: Requirement) -> list[Inlines]:
+    """Return the verdicts of the chains that serve a requirement, and what verifies it."""
     results = {result.id: result for result in (lookup.timing.chains if lookup.timing else ())}
     lines: list[Inlines] = []
     for chain in lookup.chains_for_requirement.get(requirement.id, ()):
-        if result := results.get(chain.id):
-            figures = (
-                *timing_tables.duration_cell(result.bound),
-                Text(" of "),
-                *timing_tables.deadline_cell(result),
-            )
-            lines.append((*chain_status.verdict_chip(result), Text(" "), *(figures if result.deadline else ())))
-    lines += requirement_servers.list_verifiers(lookup, requirement)
-    if not lines:
-        told = [each.accuracy for component in servers for each in component.performance if each.accuracy]
-        lines = [inline_text.to_inlines(Text(f"to be tried: {join_first(told, 1)}", muted=True))] if told else []
-    return inline_text.join_lines(lines) or (Text(_judge(lookup, requirement), muted=True),)
+        if (result := results.get(chain.id)) and result.deadline:
+            figures = (*timing_tables.duration_cell(result.bound), Text(" of "), *timing_tables.deadline_cell(result))
+            lines.append((*chain_status.verdict_chip(result), Text(" "), *figures))
+    return [*lines, *requirement_servers.list_verifiers(lookup, requirement)]
+
+
+def _list_trials(lookup: Lookup, requirement: Requirement) -> list[str]:
+    """Return how good the components that serve a requirement are to be: figures that a trial shows."""
+    servers = lookup.components_for_requirement.get(requirement.id, ())
+    return [each.accuracy for component in servers for each in component.performance if each.accuracy]

@@ -35,7 +35,7 @@ from archgen.views.shapes import (
     keep_columns,
     make_columns,
 )
-from archgen.views.timing import chain_charts, element_timing
+from archgen.views.timing import chain_charts, chain_status, element_timing
 
 _MAX_CHAINS = 8
 """Chains with a slide of their own; all are in the table."""
@@ -108,7 +108,9 @@ class _SlideMaker:
             return
         chain, anchor = self.architecture.chains[result.id], f"slide:chains/{result.id}"
         pictures = tuple(make_figures(self.edition.drawings, f"chains/{result.id}"))
-        verdict = Text(chain_charts.describe_chain_verdict(result, self.lookup.timing), status=result.verdict)
+        verdict = Text(
+            chain_charts.describe_chain_verdict(result, self.lookup.timing), status=chain_status.find_status(result)
+        )
         told, *_, table = element_timing.make_chain_blocks(self.lookup, self.lookup.timing, result, _TOLD_BESIDE)
         facts = dict(self.printer.list_chain_facts(result))
         if chain.requirements:

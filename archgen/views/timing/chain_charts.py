@@ -14,7 +14,7 @@ from archgen.simulation.schedule_log import LateSchedule, TrackSpan
 from archgen.timing.analysis import ChainResult, ChainVerdict
 from archgen.timing.chains.chain_advice import describe_lateness, sum_known_parts
 from archgen.timing.figures.figure_wording import format_duration
-from archgen.timing.figures.timing_values import TimingValue
+from archgen.timing.figures.timing_values import TimingValue, is_known_bound
 from archgen.views.lookup import Lookup
 from archgen.views.picture_shapes import BarSegment, Chart, ChartBar, SegmentKind
 from archgen.views.shapes import Block, Figure, Paragraph, Text
@@ -250,15 +250,11 @@ def describe_chain_verdict(result: ChainResult, timing_lookup: TimingLookup) -> 
     """Describe in one sentence whether a chain meets its deadline, and by how much."""
     bound, deadline = result.bound, result.deadline
     missing_text = value_format.describe_missing(bound, timing_lookup.analysis, 4)
-    if result.verdict == "open":
-        bound_text = value_format.display_duration(bound) + (f"; no bound: {missing_text}" if missing_text else "")
-        return (
-            f"Open: {bound_text}."
-            if deadline or missing_text
-            else f"At the latest after {bound_text}; it has no deadline."
-        )
+    bound_text = value_format.display_duration(bound) + (f"; no bound: {missing_text}" if missing_text else "")
     if deadline is None or deadline.value is None:
-        return f"{result.verdict.capitalize()}: {value_format.display_duration(bound)}."
+        return f"No deadline. {'At the latest after ' if is_known_bound(bound) else ''}{bound_text}."
+    if result.verdict == "open":
+        return f"Open: {bound_text}."
     if result.verdict != "met" or bound.value is None:
         return f"{result.verdict.capitalize()}. {describe_lateness(timing_lookup.analysis, result, deadline.value)}"
     left_text = chain_status.round_duration(deadline.value - bound.value, ">")

@@ -8,7 +8,7 @@ from fractions import Fraction
 
 from archgen.timing.analysis import ChainResult
 from archgen.timing.chains.chain_verdicts import find_lateness
-from archgen.views.shapes import Inlines, Meter, Text
+from archgen.views.shapes import Inlines, Meter, Status, Text
 from archgen.views.short_figures import round_number
 
 _VERDICT_RANKS = {"missed": 0, "not proven": 1, "open": 2, "met": 3}
@@ -19,20 +19,25 @@ NO_DEADLINE: Inlines = (Text("no deadline", muted=True),)
 def rank_chains(results: Iterable[ChainResult]) -> tuple[ChainResult, ...]:
     """Sort chains, the worst first: missed, not proven, open, met; then by the share of the deadline that is used.
 
-    Chains that lack nothing but a deadline come last: there is nothing to be late for.
+    Chains without a deadline come last: there is nothing to be late for.
     """
     return tuple(sorted(results, key=_chain_rank))
 
 
 def _chain_rank(result: ChainResult) -> tuple[int, Fraction]:
-    if lacks_only_deadline(result):
+    if lacks_deadline(result):
         return (len(_VERDICT_RANKS), Fraction(0))
     return (_VERDICT_RANKS[result.verdict], -(used_share(result) or Fraction(0)))
 
 
-def lacks_only_deadline(result: ChainResult) -> bool:
-    """Whether a chain is open only because it has no deadline."""
-    return result.deadline is None and result.bound.complete and result.bound.value is not None
+def lacks_deadline(result: ChainResult) -> bool:
+    """Whether a chain has no deadline: there is nothing to judge, whatever is known of it."""
+    return result.deadline is None
+
+
+def find_status(result: ChainResult) -> Status | None:
+    """Return the verdict on a chain as a status; None where it has no deadline."""
+    return None if lacks_deadline(result) else result.verdict
 
 
 def used_share(result: ChainResult) -> Fraction | None:
@@ -43,7 +48,7 @@ def used_share(result: ChainResult) -> Fraction | None:
 
 def chain_chip(result: ChainResult) -> Inlines:
     """Return the verdict on a chain as a chip, with its margin."""
-    if lacks_only_deadline(result):
+    if lacks_deadline(result):
         return NO_DEADLINE
     margin = describe_margin(result)
     return (Text(f"{result.verdict} · {margin}" if margin else result.verdict, strong=True, status=result.verdict),)
@@ -51,7 +56,7 @@ def chain_chip(result: ChainResult) -> Inlines:
 
 def verdict_chip(result: ChainResult) -> Inlines:
     """Return the verdict on a chain as a chip, without its margin: that has a column of its own."""
-    if lacks_only_deadline(result):
+    if lacks_deadline(result):
         return NO_DEADLINE
     return (Text(result.verdict, strong=result.verdict != "met", status=result.verdict),)
 

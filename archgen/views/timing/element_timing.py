@@ -18,7 +18,6 @@ from archgen.views.timing.chain_charts import make_late_run_figures
 from archgen.views.timing.flow_tables import list_activities
 from archgen.views.timing.timing_lookup import TimingLookup
 
-_SHOWN_PARTS = 6
 """How many of those whose work a response waits for are named."""
 _NAME = re.compile(r"((?<![\w/.])/[\w/]++|(?<![\w/.])[a-z0-9.]++(?:_[a-z0-9.]++)++)")
 
@@ -192,37 +191,8 @@ def _activity_facts(
         rate = (*inline_text.to_inlines(rate_text), *((Text(", "), *source) if source else ()))
         yield Fact("activity", f"Rate{suffix}", rate)
     if response and response.worst.value is not None:
-        tier = f" ({timing_tables.TIER_WORDS[response.tier]})" if timing_tables.TIER_WORDS[response.tier] else ""
-        words = f"within {value_format.display_duration(response.worst)}{tier}"
-        parts = _list_response_parts(timing_lookup, activity)
-        yield Fact(
-            "activity",
-            f"Response{suffix}",
-            (Text(words), *((Text(": "), *inline_text.join_first(parts, _SHOWN_PARTS)) if len(parts) > 1 else ())),
-        )
+        yield Fact("activity", f"Response{suffix}", timing_tables.describe_response(timing_lookup, activity))
     yield from use_tables.list_use_facts(timing_lookup, activity, suffix)
-
-
-def _list_response_parts(timing_lookup: TimingLookup, activity: Activity) -> list[Inlines]:
-    """Return whose work a response is the sum of, its own first, then the most; empty where it is no plain sum."""
-    working = timing_lookup.response_terms.find_response(activity.id) if timing_lookup.response_terms else None
-    if working is None:
-        return []
-    times: dict[str, int] = {}
-    for term in working.terms:
-        for name, cost in term.parts:
-            times[name] = times.get(name, 0) + term.events.number * cost
-    if not sum(times.values()) == working.window == working.value or working.core_count > 1:
-        return []
-    tick = timing_lookup.analysis.system.tick
-    ranked = sorted(times.items(), key=lambda each: (each[0] != activity.id, -each[1], each[0]))
-    return [
-        (
-            Text(f"{value_format.display_duration(TimingValue(time * tick))} "),
-            *((Text("of its own"),) if name == activity.id else timing_tables.activity_link(timing_lookup, name)),
-        )
-        for name, time in ranked
-    ]
 
 
 def make_rate_fact(lookup: Lookup, nodes: Iterable[Node], component_id: str) -> Inlines:

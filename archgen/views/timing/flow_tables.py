@@ -298,8 +298,11 @@ def list_flow_lines(lookup: Lookup, element: Node | Component) -> Iterator[tuple
     ):
         yield name, tuple(_write_line(row, arrow) for row in rows)
     results = _list_chains_through(lookup, {each.id for each in activities})
-    yield "chains", tuple(f"{each.id}: {_read(chain_status.chain_chip(each))}" for each, *_ in results)
-    yield "how long it may take", tuple(map(_read, list_time_left(lookup, activities)))
+    yield "chains", tuple(_write_chain(each, first, sums[1]) for each, first, sums in results)
+    yield (
+        "how long it may take",
+        tuple(map(_read, (*_list_responses(lookup, activities), *list_time_left(lookup, activities)))),
+    )
     yield (
         "what no chain says",
         tuple(
@@ -308,6 +311,15 @@ def list_flow_lines(lookup: Lookup, element: Node | Component) -> Iterator[tuple
         ),
     )
     yield "what rests on it", tuple(map(_read, list_reliance(lookup, element)))
+
+
+def _write_chain(result: ChainResult, first: ChainTerm, own_time: Fraction) -> str:
+    """Write how a chain stands, and how much of it passes in an element."""
+    own, whole = TimingValue(own_time, result.bound.complete), result.bound
+    share = f"; its work counted at {first.counted_at}" if first.counted_at else ""
+    if own_time:
+        share = f"; {value_format.display_duration(own)} of {value_format.display_duration(whole)} here"
+    return f"{result.id}: {_read(chain_status.chain_chip(result))}{share}"
 
 
 def _write_line(row: FlowRow, arrow: str) -> str:
@@ -326,6 +338,15 @@ def _write_line(row: FlowRow, arrow: str) -> str:
 def _read(cell: Inlines) -> str:
     """Return the text of a cell on one line."""
     return "".join(f", {run.text}" if run.line_break else run.text for run in cell)
+
+
+def _list_responses(lookup: Lookup, activities: Sequence[Activity]) -> Iterator[Inlines]:
+    """Yield within what time activities respond, and why not sooner."""
+    for activity in activities if lookup.timing else ():
+        response = lookup.timing.analysis.responses.get(activity.id) if lookup.timing else None
+        if lookup.timing and response and response.worst.value is not None and activity.wcet is not None:
+            name = (Text(activity.id, code=True), Text(": ")) if len(activities) > 1 else ()
+            yield (*name, *timing_tables.describe_response(lookup.timing, activity))
 
 
 def list_time_left(lookup: Lookup, activities: Sequence[Activity]) -> Iterator[Inlines]:
@@ -420,9 +441,14 @@ def make_partner_bullets(lookup: Lookup, activities: Sequence[Activity]) -> Bull
             (
                 *inline_text.owner_links(architecture, (owner,)),
                 *element_references.link_names(architecture, f" {words}"),
+                *((Text(f" · {contact}", muted=True),) if (contact := _find_contact(lookup, owner)) else ()),
             )
         )
     return Bullets(tuple(items)) if items else None
+
+
+def _find_contact(lookup: Lookup, partner: str) -> str | None:
+    return lookup.architecture.partners[partner].contact if partner in lookup.architecture.partners else None
 
 
 def make_flow_sections(lookup: Lookup, element: Node | Component) -> list[Section]:
@@ -432,11 +458,20 @@ def make_flow_sections(lookup: Lookup, element: Node | Component) -> list[Sectio
     chains = make_chain_share_table(lookup, name, title, activities)
     partners = make_partner_bullets(lookup, activities)
     time_left, reliance = tuple(list_time_left(lookup, activities)), tuple(list_reliance(lookup, element))
-    unwritten = Paragraph(inline_text.to_inlines("No execution time is written. What is left to it:"))
+    unwritten = (
+        Paragraph(inline_text.to_inlines("No execution time is written. What is left to it:")),
+        Bullets(time_left),
+    )
+    # The facts of a node say it of each of its activities.
+    known = () if isinstance(element, Node) else tuple(_list_responses(lookup, activities))
     parts: list[tuple[str, str, tuple[Block, ...]]] = [
         ("flows", "Takes in and gives out", tuple(make_flow_blocks(lookup, name, title, activities))),
         ("chains-through", "Chains through it", (chains,) if chains else ()),
-        ("time-left", "How long it may take", (unwritten, Bullets(time_left)) if time_left else ()),
+        (
+            "time-left",
+            "How long it may take",
+            (*((Bullets(known),) if known else ()), *(unwritten if time_left else ())),
+        ),
         ("unjudged", "What no chain says", tuple(make_unjudged_blocks(lookup, activities))),
         ("reliance", "What rests on it", (Bullets(reliance),) if reliance else ()),
         ("partners-of", "Who to talk to", (partners,) if partners else ()),

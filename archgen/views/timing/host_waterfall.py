@@ -98,10 +98,12 @@ _LEGEND = (("response", "busy"), ("unknown", "unknown"))
 def make_host_waterfall(lookup: Lookup, timing_lookup: TimingLookup, host_id: str) -> Waterfall | None:
     """Show where the time of a host goes; None where nothing runs on it, nothing is known, or its cores are not."""
     load = timing_lookup.analysis.hosts.get(host_id)
-    if load is None or load.cores is None or not load.utilisation.value:
+    if load is None or load.cores is None:
         return None
     shares = sum_by_node(timing_lookup, load, load.cores)
     total = sum((share.value or Fraction(0) for share in shares.values()), Fraction(0))
+    if not total:
+        return None
     whole = max(Fraction(1), total)
     room = 1 - _UNKNOWN_LENGTH if any(not share.complete for share in shares.values()) else 1.0
     return Waterfall(

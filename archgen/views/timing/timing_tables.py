@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
+from fractions import Fraction
 
 from archgen.frozen import replace
 from archgen.timing.analysis import ChainResult, EventPace, HostLoad
 from archgen.timing.figures.figure_wording import format_duration
 from archgen.timing.figures.timing_values import TimingValue
 from archgen.timing.load.host_verdicts import name_host_verdict
+from archgen.timing.load.work_terms import WorkTerm
 from archgen.timing.system.timing_system import Activity
 from archgen.views import element_references, inline_text, timing_words
 from archgen.views.lookup import Lookup
@@ -49,6 +51,8 @@ LOAD_STATES: Mapping[str, Status] = {
     "schedulable": "met",
 }
 """The states that verdicts on loads are shown as, the worst first."""
+_SHOWN_PARTS = 6
+_NAMED_OTHERS = 3
 _MISSING_CORES = Text("not written", muted=True)
 _MUTED_UNKNOWN = Text("unknown", muted=True)
 
@@ -70,11 +74,56 @@ def duration_cell(value: TimingValue) -> Inlines:
     return figure_cell(value_format.display_duration(value), value)
 
 
-def deadline_cell(result: ChainResult) -> Inlines:
-    """Return a table cell for all deadlines of a chain: `400 ms, 95 % in 150 ms`."""
+def deadline_cell(result: ChainResult, *, is_narrow: bool = False) -> Inlines:
+    """Return a table cell for all deadlines of a chain: `400 ms, 95 % in 150 ms`; in a narrow column one below the other."""
     always = lower_bound_cell(result.deadline) if result.deadline else ()
-    shares = ", ".join(f"{each.name} in {format_duration(each.limit)}" for each in result.shares)
-    return (*always, Text(f"{', ' if always else ''}{shares}")) if shares else always
+    shares = [f"{each.name} in {format_duration(each.limit)}" for each in result.shares]
+    if is_narrow:
+        return (*always, *(Text(each, line_break=bool(always or at)) for at, each in enumerate(shares)))
+    return (*always, Text(f"{', ' if always else ''}{', '.join(shares)}")) if shares else always
+
+
+def describe_response(timing_lookup: TimingLookup, activity: Activity) -> Inlines:
+    """Describe within what time an activity responds, how that was found, and of what it is the sum."""
+    response = timing_lookup.analysis.responses[activity.id]
+    tier = TIER_WORDS[response.tier]
+    words = f"within {value_format.display_duration(response.worst)}{f' ({tier})' if tier else ''}"
+    parts = _list_response_parts(timing_lookup, activity)
+    return (Text(words), *((Text(": "), *inline_text.join_first(parts, _SHOWN_PARTS)) if len(parts) > 1 else ()))
+
+
+def _list_response_parts(timing_lookup: TimingLookup, activity: Activity) -> list[Inlines]:
+    """Return whose work a response is the sum of, its own first, then the most; of what is no plain sum its own work and the rest."""
+    tick, response = timing_lookup.analysis.system.tick, timing_lookup.analysis.responses[activity.id].worst.value
+    working = timing_lookup.response_terms.find_response(activity.id) if timing_lookup.response_terms else None
+    if working is None or response is None or activity.wcet is None:
+        return []
+    times, beside = (_sum_parts(terms) for terms in (working.terms, working.beside_terms))
+    own = activity.wcet
+    if sum(times.values()) + working.blocked_time == working.window == working.value:
+        own, ranked = times.pop(activity.id, 0), sorted(times, key=lambda name: (-times[name], name))
+        parts = [(Text(_write_time(times[name] * tick)), *activity_link(timing_lookup, name)) for name in ranked]
+        busy_names = sorted(beside, key=lambda name: (-beside[name], name))
+        links = [activity_link(timing_lookup, name) for name in busy_names]
+        lead = f"{_write_time(working.blocked_time * tick)}in which others may come first: "
+        blocked = [(Text(lead), *inline_text.join_first(links, _NAMED_OTHERS))] if working.blocked_time else []
+        return [(Text(f"{_write_time(own * tick)}of its own"),), *blocked, *parts]
+    rest = response - own * tick
+    words = f"{_write_time(rest)}in which others come first (archgen timing --why {activity.id})"
+    return [(Text(f"{_write_time(own * tick)}of its own"),), (Text(words),)] if rest > 0 else []
+
+
+def _sum_parts(terms: Iterable[WorkTerm]) -> dict[str, int]:
+    """Add up what terms cost, by whose work it is."""
+    times: dict[str, int] = {}
+    for term in terms:
+        for name, cost in term.parts:
+            times[name] = times.get(name, 0) + term.events.number * cost
+    return times
+
+
+def _write_time(nanoseconds: Fraction) -> str:
+    return f"{value_format.display_duration(TimingValue(nanoseconds))} "
 
 
 def share_cell(value: TimingValue) -> Inlines:

@@ -9,7 +9,7 @@ from archgen.timing.analysis import ChainResult
 from archgen.timing.chains.chain_advice import advise_on_chain, sum_known_parts
 from archgen.timing.chains.chain_verdicts import VERDICT_MEANINGS
 from archgen.timing.chains.missing_figures import UnfoundPlace, group_by_host
-from archgen.timing.figures.timing_values import TimingValue
+from archgen.timing.figures.timing_values import TimingValue, is_known_bound
 from archgen.views import inline_text
 from archgen.views.lookup import Lookup
 from archgen.views.shapes import Block, Bullets, Inlines, Paragraph, Table, Text, make_columns
@@ -22,7 +22,7 @@ def summarize_verdicts(timing_lookup: TimingLookup) -> Paragraph:
     sentences: list[str] = []
     if timing_lookup.chains:
         verdicts = [
-            "without a deadline" if chain_status.lacks_only_deadline(result) else result.verdict
+            "without a deadline" if chain_status.lacks_deadline(result) else result.verdict
             for result in timing_lookup.chains
         ]
         counts = [
@@ -53,7 +53,7 @@ def list_late_elements(lookup: Lookup, timing_lookup: TimingLookup) -> Iterator[
         for verdict in ("missed", "not proven", "open")
         for result in timing_lookup.chains
         if result.verdict == verdict
-        and not chain_status.lacks_only_deadline(result)
+        and not chain_status.lacks_deadline(result)
         and result.id in lookup.architecture.chains
     ]
     hosts = [
@@ -70,11 +70,11 @@ def list_late_elements(lookup: Lookup, timing_lookup: TimingLookup) -> Iterator[
 
 
 def list_troubled_chains(lookup: Lookup) -> list[ChainResult]:
-    """Return the chains that are not shown to meet their deadline, the worst first."""
+    """Return the chains that are not shown to meet their deadline, or without one lack figures, the worst first."""
     return [
         result
         for result in (lookup.timing.chains if lookup.timing else ())
-        if result.verdict != "met" and not chain_status.lacks_only_deadline(result)
+        if result.verdict != "met" and not (chain_status.lacks_deadline(result) and is_known_bound(result.bound))
     ]
 
 

@@ -70,7 +70,7 @@
     }
   }
 
-  const PAGE_ROWS = 100;
+  const PAGE_ROWS = 100, WIDE_COLUMNS = 9; // a page of a table as wide has fewer rows: all is to stay below 5,000 elements
 
   // Rows behind the first ones of a long table wait as text: a browser takes tens of thousands of cells badly.
   function takeRest(table) {
@@ -87,7 +87,8 @@
     const shown = [...table.tBodies[0].rows];
     const given = [...shown, ...takeRest(table)];
     const isLong = given.length > shown.length;
-    let rows = given, words = [], page = 0, size = isLong ? PAGE_ROWS : Infinity;
+    const pageRows = table.tHead.rows[0].cells.length < WIDE_COLUMNS ? PAGE_ROWS : 40;
+    let rows = given, words = [], page = 0, size = isLong ? pageRows : Infinity;
     const list = {
       given,
       found: given.length,
@@ -137,7 +138,7 @@
     back.addEventListener("click", () => go(page - 1));
     on.addEventListener("click", () => go(page + 1));
     all.addEventListener("click", () => {
-      size = size === Infinity ? PAGE_ROWS : Infinity;
+      size = size === Infinity ? pageRows : Infinity;
       go(0);
     });
     list.onDraw = () => {

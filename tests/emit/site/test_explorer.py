@@ -263,14 +263,31 @@ def test_positions_stay_on_focus_filter_and_theme(visit: OpenPage) -> None:
 
 def test_ways_from_a_to_b(visit: OpenPage) -> None:
     page = visit("#level=components&open=hardware")
-    page.get_by_role("button", name="A → B: all ways").click()
+    page.get_by_role("button", name="A → B: the ways").click()
     page.get_by_label("From", exact=True).fill("skeleton_tracking")
     page.get_by_label("To", exact=True).fill("situation_assessment")
-    page.get_by_role("button", name="Show all ways").click()
+    page.get_by_role("button", name="Show the ways").click()
     assert address(page)["sel"] == "skeleton_tracking..situation_assessment"
     # What the way of the panel passes is open, the rest stays as it was.
     assert address(page)["open"].split() == ["hardware", "human_state", "cognitive_reasoning"]
-    assert {"Skeleton Tracking", "Fall Detector", "Situation Assessment"} <= set(lit(page))
+    assert {"Skeleton Tracking", "Situation Assessment"} == set(lit(page))
+
+
+def test_of_all_ways_those_of_fewest_steps_are_lit_until_all_are_asked_for(visit: OpenPage) -> None:
+    page = visit("#level=components&open=*&sel=skeleton_tracking..speed_separation_monitor")
+    shortest = set(lit(page))
+    assert len(shortest) < 6
+    assert {"Skeleton Tracking", "Speed and Separation Monitor"} <= shortest
+    page.get_by_role("button", name="All ways", exact=True).click()
+    assert address(page)["ways"] == "all"
+    assert len(lit(page)) > 40
+    page.get_by_role("button", name="Only the shortest").click()
+    assert set(lit(page)) == shortest
+    # Another selector begins with its shortest ways.
+    page.get_by_role("button", name="All ways", exact=True).click()
+    page.locator("#selector").fill("skeleton_tracking..situation_assessment")
+    page.keyboard.press("Enter")
+    assert "ways" not in address(page)
 
 
 @pytest.mark.parametrize(

@@ -81,6 +81,20 @@ def test_a_figure_that_breaks_something_is_no_noise(tmp_path: Path) -> None:
     assert [change.element_id for change in comparison.changes if change.breaks] == ["logging.log"]
 
 
+def test_readers_of_whom_the_same_holds_stand_in_one_line(tmp_path: Path) -> None:
+    promised = PROJECT.replace("max_gap: 130 ms", "max_age: 10 ms").replace(
+        LOG, LOG.replace("rate: 10 Hz", "behaviour: event")
+    )
+    promised = promised.replace("log: Log", "log: {inputs: {rows: eye.rows}}")
+    lost = promised.replace("eye, host: pc, timing: {rate: 10 Hz, wcet: 5 ms}", "eye, host: pc, timing: {rate: 10 Hz}")
+    comparison = compare(tmp_path, promised, lost)
+    (line,) = [line.text for line in write_limit_lines(comparison)]
+    assert line == (
+        "the promise of `sense.eye.rows` of no greater age than 10 ms was broken, and nobody knows it any more, where "
+        "`act.base.rows` and `logging.log.rows` read it (15 ms → not known without figures of `eye`)"
+    )
+
+
 def test_what_is_kept_again_is_told(tmp_path: Path) -> None:
     broken = PROJECT.replace(LOG, LOG.replace("5 ms", "60 ms"))
     comparison = compare(tmp_path, broken, PROJECT)

@@ -119,4 +119,5 @@ def test_a_purpose_is_the_first_sentence_with_its_marked_words_set() -> None:
         ("act", False, True),
         (".", False, False),
     ]
+    assert sum(len(run.text) for run in describe_purpose("word " * 500)) <= 300  # in a row of a table
     assert inline_text.strip_marks("Takes *no* for **an** `answer`") == "Takes no for an answer"

@@ -53,7 +53,7 @@ def test_verdicts() -> None:
         "Not proven. It may take up to 138.3 ms, 38.3 ms longer than its deadline of 100 ms allows; nothing shows that it ever does."
     )
     assert _verdict(200 * MS, None) == "Open: >= 108.3 ms; no bound: execution time of b unknown."
-    assert _verdict(None) == "At the latest after 138.3 ms; it has no deadline."
+    assert _verdict(None) == "No deadline. At the latest after 138.3 ms."
 
 
 def test_an_unknown_term_is_drawn_as_unknown() -> None:

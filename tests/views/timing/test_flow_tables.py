@@ -154,8 +154,20 @@ def test_site_pages_and_cards_have_the_same_rows(tmp_path: Path) -> None:
         lists = dict(make_card(lookup, kind, name).lists)
         assert [line.partition(" <-")[0] for line in lists["takes in"]] == [row[0] for row in tables[0]]
         assert all(row[5] in line for row, line in zip(tables[0], lists["takes in"], strict=True))
-        assert lists["chains"] == ("see: met · 267 ms left",)
+        assert lists["chains"] == ("see: met · 267 ms left; 111 ms of 133 ms here",)
+        assert lists["how long it may take"] == (
+            "within 6 ms (any order of execution): 5 ms of its own, 1 ms odometry",
+        )
         assert lists["what no chain says"][0].startswith("pose: ")
+
+
+def test_a_response_on_several_cores_says_in_what_of_it_others_may_come_first(tmp_path: Path) -> None:
+    lookup = _look_up(tmp_path, ROBOT.replace("k: {cores: 1}", "k: {cores: 2}").replace("host: h", "host: k"))
+    lists = dict(make_card(lookup, "node", "stop").lists)
+    (line,) = lists["how long it may take"]
+    assert line.startswith("within ")
+    assert ": 5 ms of its own, " in line
+    assert line.endswith(" in which others may come first: camera, odometry")
 
 
 def _list_flows(section: Section) -> list[list[str]]:

@@ -73,6 +73,19 @@ def test_a_load_that_nobody_knows_is_hatched_and_what_is_left_is_at_most_the_res
     assert waterfall.figures[1].value == "<= 90 %"
 
 
+def test_a_host_of_which_only_foreign_load_is_known_has_no_waterfall(tmp_path: Path) -> None:
+    fair = "cores: 2, scheduling: {fair: {slice: 3 ms, tick: 1 ms, lead: 5, other_load: 10 %}}"
+    file = tmp_path / "robot.yaml"
+    file.write_text(
+        f"groups: {{g: {{components: {{eye: Eye}}}}}}\nhosts: {{pc: {{{fair}}}}}\nnodes: {{eye: {{host: pc, timing: {{rate: 5 Hz}}}}}}\n"
+    )
+    architecture = check_project(file).architecture
+    lookup = make_lookup(architecture, timing_lookup=analyse_with_chains(architecture))
+    assert lookup.timing is not None
+    assert lookup.timing.analysis.hosts["pc"].utilisation.value
+    assert make_host_waterfall(lookup, lookup.timing, "pc") is None
+
+
 def test_chains_stand_on_one_scale_the_worst_first_and_without_a_deadline_nowhere(tmp_path: Path) -> None:
     lookup = look_up(tmp_path)
     assert lookup.timing is not None

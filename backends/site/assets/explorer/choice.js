@@ -16,11 +16,13 @@ archgenExplorer.readChoice = (function () {
     const numbersOf = (selection) => (isNodes ? selection.nodes : selection.components);
     const selection = state.sel ? select(state.sel) : null;
     const isWrong = selection?.problems.some(({ severity }) => severity === "error");
-    const lit = selection && !isWrong ? numbersOf(selection) : null;
+    const all = selection && !isWrong ? numbersOf(selection) : null;
+    const shortest = all && selection.ends ? keepShortest(model, isNodes, all, selection.ends) : all;
+    const lit = state.ways ? all : shortest, longer = all ? all.size - shortest.size : 0;
     const focus = lit && readFocus(state.sel);
     const base = focus && numbersOf(select(focus.atom));
     const sideOf = base ? measureSides(isNodes ? model.nodeSteps : model.componentSteps, base, focus) : () => "plain";
-    return { picked, open, selection, lit, focus, sideOf, hints };
+    return { picked, open, selection, lit, longer, focus, sideOf, hints };
   };
 
   function readPick(level, allShells, id, nearest) {
@@ -43,6 +45,21 @@ archgenExplorer.readChoice = (function () {
     const open = wanted.flatMap((each) => [...level.aroundOf(each), each]);
     if (picked) open.push(...level.aroundOf(picked));
     return archgenExplorer.unique(open.map(({ id }) => id));
+  }
+
+  // Of all that lies on ways from one end to the other, what lies on those of fewest steps: of a robot with feedback nearly
+  // everything lies on some way.
+  function keepShortest(model, isNodes, all, { first, last }) {
+    const { before, after } = isNodes ? model.nodeSteps : model.componentSteps;
+    const [starts, ends] = [first, last].map((end) => (isNodes ? end.nodes : end.components));
+    if ([...starts].some((each) => ends.has(each))) return all;
+    // The first step of outputs is to their own readers.
+    const outputs = isNodes ? [] : first.outputs;
+    const gone = measure(after, outputs.length ? outputs.flatMap((at) => [...model.readers[at]]) : starts), left = measure(before, ends);
+    const isStart = (each) => outputs.length > 0 && starts.has(each);
+    const count = (each) => (isStart(each) ? Infinity : (gone.get(each) ?? Infinity) + (left.get(each) ?? Infinity));
+    const fewest = Math.min(...[...all].map(count));
+    return fewest === Infinity ? all : new Set([...all].filter((each) => isStart(each) || count(each) === fewest));
   }
 
   // A selector of one word is a focus, with steps before and after.

@@ -101,7 +101,7 @@ archgenExplorer.makeDrawing = function (map, layers) {
     const sign = shape("g", { class: "fold-sign" }, shape("rect", { x: width - 38, y: 12, width: 24, height: 24, rx: 6 }),
       shape("path", { d: `M${width - 31} 24h10` }));
     return makeNode(box, colouring, shape("rect", { class: "shell open", width, height, rx: 12 }),
-      ...drawTexts(box.lines, "title near", 20, 27, 18), ...drawTexts([box.line], "line", 20, 45, 0),
+      ...drawTexts(box.lines, "title near", 20, 27, 18), ...drawTexts([layOut.cut(box.line, width - 40, "400 12px Inter, system-ui, sans-serif")], "line", 20, 45, 0),
       ...drawTexts([layOut.cut(box.title, width - 30, "600 28px Inter, system-ui, sans-serif")], "title farthest", 16, 40, 0), sign,
       shape("rect", { class: "ring", x: -4, y: -4, width: width + 8, height: height + 8, rx: 15 }));
   }

@@ -51,8 +51,10 @@ archgenExplorer.makeLegend = function (actions) {
   };
 
   // Problems of the selector and of the address, and what is folded.
-  function say(scene, problems, hints) {
-    const rows = [];
+  function say(scene, { selection, longer }, hints) {
+    const rows = [], problems = selection?.problems ?? [];
+    if (longer) rows.push(element("p", {}, actions.state.ways ? "Lit are all ways. " : `Lit are the ways of fewest steps; ${longer} more on longer ways. `,
+      act(actions.state.ways ? "Only the shortest" : "All ways", () => actions.showLonger())));
     for (const text of hints) rows.push(element("p", { className: "problem", textContent: text }));
     for (const { message, help } of problems) {
       rows.push(element("p", { className: "problem", textContent: (message + (help ? `; ${help}` : "")).replaceAll("`", "") }));

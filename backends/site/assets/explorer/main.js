@@ -18,7 +18,7 @@
 
   const store = archgenExplorer.makeState((problems) => render(problems ?? []), begin);
   const { state } = store;
-  const actions = { state, colours, level: () => level, change: store.change, step, save, say: (text) => sayOnce(text), toggleAll, toggle, openHome, showAll, showWays, focus: focusOn,
+  const actions = { state, colours, level: () => level, change: store.change, step, save, say: (text) => sayOnce(text), toggleAll, toggle, openHome, showAll, showLonger, showWays, focus: focusOn,
     pick, pickBox, pickArrow, pickedName: () => (choice.picked?.kind === "host" ? "" : choice.picked?.id ?? "") };
   const camera = archgenExplorer.makeCamera(stage, map, (view) => minimap.follow(view), ({ x, y, zoom }) => store.moved([x, y, zoom]));
   const minimap = archgenExplorer.makeMinimap(camera, stage);
@@ -40,13 +40,15 @@
   document.querySelector("main").append(element("div", { className: "explorer" }, tools.bar,
     element("div", { className: "desk" }, stage, list.root, panel.panel), status, keys.dialog));
 
-  // Without an address: what is readable with its groups open needs no click to show what is inside.
-  const MANY_BOXES = 30, NARROW = 720; // px
+  // Without an address: what is readable with its groups open needs no click to show what is inside; what no telephone shows
+  // in a readable size begins as a list.
+  const MANY_BOXES = 30, MANY_HOMES = 20, NARROW = 720; // px
   function begin(first) {
     if (!model.components.length) first.level = "nodes";
     const { homes, children } = levelOf(first.level);
     const count = homes.reduce((sum, home) => sum + children.get(home).length, 0);
     if (count <= MANY_BOXES && innerWidth > NARROW) first.open = ["*"];
+    first.list = homes.length > MANY_HOMES && innerWidth <= NARROW;
   }
 
   // --- from the address to the screen ---------------------------------------------------------------------------
@@ -75,7 +77,7 @@
     const litBoxes = light.show({ scene, lit: choice.lit, pickedArrow });
     minimap.draw(scene, bounds);
     legend.draw(scene, colouring, Boolean(choice.lit || choice.picked));
-    legend.say(scene, choice.selection?.problems ?? [], hints);
+    legend.say(scene, choice, hints);
     list.draw(scene, state.list);
     stage.classList.toggle("gone", state.list);
     tools.update({ state, ...choice, shownCount, homes: level.homes });
@@ -223,6 +225,10 @@
 
   function showAll() {
     store.change({ full: true });
+  }
+
+  function showLonger() {
+    store.change({ ways: !state.ways, at: null });
   }
 
   function focusOn(name, before, after) {

@@ -4,7 +4,7 @@
 archgenExplorer.makeState = function (onChange, begin) {
   const LEVELS = ["groups", "components", "nodes", "hosts"];
   const VIEW_DELAY = 250; // ms without moving before the place is written into the address
-  const initial = () => ({ level: "components", open: [], sel: "", pick: "", colour: "group", only: [], full: false, list: false, at: null });
+  const initial = () => ({ level: "components", open: [], sel: "", pick: "", colour: "group", only: [], full: false, ways: false, list: false, at: null });
   const state = initial();
   let timer = 0;
 
@@ -21,6 +21,7 @@ archgenExplorer.makeState = function (onChange, begin) {
     state.only = given.getAll("only").map((text) => [text.slice(0, text.indexOf(":")), text.slice(text.indexOf(":") + 1)])
       .filter(([key]) => key);
     state.full = given.has("full");
+    state.ways = given.get("ways") === "all";
     state.list = given.get("view") === "list";
     const at = (given.get("at") ?? "").split(",").map(Number);
     state.at = at.length === 3 && at.every(Number.isFinite) && at[2] > 0 ? at : null;
@@ -35,6 +36,7 @@ archgenExplorer.makeState = function (onChange, begin) {
     if (state.colour !== "group") given.set("colour", state.colour);
     for (const [key, value] of state.only) given.append("only", key + ":" + value);
     if (state.full) given.set("full", "1");
+    if (state.ways) given.set("ways", "all");
     if (state.list) given.set("view", "list");
     if (state.at) given.set("at", state.at.map((value) => Math.round(value * 100) / 100).join(","));
     return "#" + given;
@@ -52,7 +54,8 @@ archgenExplorer.makeState = function (onChange, begin) {
 
   function change(parts) {
     clearTimeout(timer);
-    Object.assign(state, parts);
+    // Another selector begins with its shortest ways.
+    Object.assign(state, "sel" in parts ? { ways: false } : {}, parts);
     put(true);
     onChange();
   }

@@ -87,11 +87,11 @@ archgenExplorer.makeTools = function (model, actions) {
     made.setAttribute("list", "selector-names");
     return element("label", {}, title, made);
   });
-  const wayForm = element("form", {}, fromField, toField, element("button", { type: "submit", textContent: "Show all ways" }));
+  const wayForm = element("form", {}, fromField, toField, element("button", { type: "submit", textContent: "Show the ways" }));
   const wayPanel = element("div", { id: "ways", className: "pop", popover: "auto" }, wayForm);
   wayPanel.setAttribute("aria-label", "Ways from A to B");
   wayPanel.setAttribute("role", "dialog");
-  const wayButton = button("A → B", () => {}, { ariaLabel: "A → B: all ways" });
+  const wayButton = button("A → B", () => {}, { ariaLabel: "A → B: the ways" });
   wayButton.setAttribute("popovertarget", "ways");
   wayPanel.addEventListener("beforetoggle", (event) => {
     if (event.newState !== "open") return;
