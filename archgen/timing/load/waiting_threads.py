@@ -378,5 +378,5 @@ def _name_tier(system: TimingSystem, resource: ProcessingResource) -> ResponseTi
         return "executor"
     if resource.cores > 1:
         return "cores"
-    is_ranked = system.activities[resource.units[0][0]].priority is not None
+    is_ranked = all(system.activities[name].priority is not None for name in _list_own(system, resource))
     return "priorities" if is_ranked and not _ignores_priorities(system, resource) else "host"

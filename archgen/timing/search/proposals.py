@@ -333,8 +333,8 @@ def find_proposal(trials: ChangeTrials, chains: Mapping[str, ChainResult], *, ke
 class _ProposalSearch:
     def __init__(self, trials: ChangeTrials, chains: Mapping[str, ChainResult], *, keep_triggers: bool) -> None:
         self.trials, self.space = trials, ConfigurationSpace(trials.architecture, trials.analysis, chains)
-        # What is open stays so, however things are run: its figures are missing.
-        judged = [chain for chain in chains.values() if chain.terms and chain.verdict != "open"]
+        # However things are run, what lacks figures is not proven.
+        judged = [c for c in chains.values() if c.terms and c.verdict != "open" and not c.bound.missing]
         self.deadlines = {
             chain.id: chain.deadline.value for chain in judged if chain.deadline and chain.deadline.value is not None
         }

@@ -74,6 +74,17 @@ def test_all_that_priorities_by_rate_prove_is_proven(first_seed: int) -> None:
     assert sum(is_proposed for _, is_proposed in answers) > sum(by_rate for by_rate, _ in answers)
 
 
+def test_nothing_is_tried_for_a_chain_that_lacks_figures() -> None:
+    """What is known of it is above the deadline already; no order of processes writes how many cores the host has."""
+    text = sketch(
+        {"a @p": _SENSOR, "b @p": "wcet: 3 ms", "c @p": _SLOW},
+        "a>b",
+        "hosts: {p: {}}\nchains: {c: {through: [g.a, g.b], deadline: 50 ms}}",
+    )
+    proposal = propose_for(architecture(text, is_fair=True))
+    assert (proposal.unjudged, proposal.deadlines, len(proposal.tried)) == (("c",), {}, 1)
+
+
 def test_a_project_that_is_in_time_is_left_alone() -> None:
     text = sketch(
         {"a @p": _SENSOR, "b @p": "wcet: 3 ms"},
