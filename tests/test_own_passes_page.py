@@ -24,7 +24,7 @@ def test_the_example_makes_what_the_page_says(tmp_path: Path) -> None:
     wanted = yaml.safe_load(blocks.pop("result"))
     assert sorted(blocks) == [
         "archgen.yaml",
-        *(f"passes/{name}.yaml" for name in ("log_network", "log_pictures", "move_navigation")),
+        *(f"passes/{name}.yaml" for name in ("calls_as_topics", "log_network", "log_pictures", "move_navigation")),
     ]
     for name, text in blocks.items():
         (tmp_path / name).parent.mkdir(exist_ok=True)
@@ -34,6 +34,39 @@ def test_the_example_makes_what_the_page_says(tmp_path: Path) -> None:
     packed = pack_checked_project(transform_by_name(checked, choose_passes(checked, ["log_pictures"])))
     data = yaml.safe_load(write_yaml(packed.data, packed.comments))
     assert data["groups"]["logging"]["components"]["recorder"] == wanted
+
+
+CALLS = """\
+archgen: 1
+project: {id: calls}
+types: {Set brush: {request: {speed: float64}, response: {done: bool}}}
+groups:
+  g:
+    components:
+      brush: {outputs: {set: Set brush}}
+      one: {inputs: {brush: brush.set}}
+      two: {inputs: {brush: brush.set}}
+"""
+
+
+def test_a_service_with_two_clients_becomes_a_pair_of_topics(tmp_path: Path) -> None:
+    (tmp_path / "passes").mkdir()
+    (text,) = re.findall(r"```yaml\n# passes/calls_as_topics.yaml\n(.*?)```", PAGE, flags=re.DOTALL)
+    (tmp_path / "passes" / "calls_as_topics.yaml").write_text(text, encoding="utf-8")
+    assert len(text.splitlines()) <= 10
+    (tmp_path / "archgen.yaml").write_text(CALLS, encoding="utf-8")
+    checked = check_project(tmp_path)
+    packed = pack_checked_project(transform_by_name(checked, choose_passes(checked, ["calls_as_topics"])))
+    parts = yaml.safe_load(write_yaml(packed.data, packed.comments))["groups"]["g"]["components"]
+    assert parts["brush"] == {
+        "outputs": {"set_response": {"type": "Set brush response"}},
+        "inputs": {"set_request": {"from": ["one.brush_request", "two.brush_request"]}},
+    }
+    client = {
+        "inputs": {"brush_response": {"from": ["brush.set_response"]}},
+        "outputs": {"brush_request": {"type": "Set brush request"}},
+    }
+    assert (parts["one"], parts["two"]) == (client, client)
 
 
 def test_the_page_names_all_there_is() -> None:

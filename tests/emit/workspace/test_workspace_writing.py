@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import os
 import shutil
 import subprocess
@@ -545,3 +546,30 @@ def test_attributes_of_the_user_stay(tmp_path: Path) -> None:
     generate(tmp_path, [])
     assert not (tmp_path / ".archgen").exists()
     assert (tmp_path / ".gitattributes").read_text() == "*.png binary\n"
+
+
+def test_a_second_run_asks_once_for_each_file_and_writes_no_record(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    made = files(a__b="1", a__c="2", d="3")
+    generate(tmp_path, made)
+    asked: list[str] = []
+
+    def note(function: Callable[..., object], path: object, *arguments: object, **options: object) -> object:
+        asked.append(os.path.relpath(os.fspath(path), tmp_path) if isinstance(path, str) else "")
+        return function(path, *arguments, **options)
+
+    for name in ("lstat", "stat", "open"):
+        monkeypatch.setattr(os, name, partial(note, getattr(os, name)))
+    monkeypatch.delattr(workspace_writing, "write_run_record")
+    assert verbs(generate(tmp_path, made)) == {"a/b": "same", "a/c": "same", "d": "same"}
+    assert [asked.count(path) for path in ("a/b", "a/c", "d")] == [1, 1, 1]
+
+
+def test_a_record_that_somebody_laid_out_anew_is_written_again(tmp_path: Path) -> None:
+    generate(tmp_path, files(a="1"))
+    record = tmp_path / ".archgen" / "code.json"
+    before = record.read_bytes()
+    record.write_text(json.dumps(json.loads(before), indent=4))
+    generate(tmp_path, files(a="1"))
+    assert record.read_bytes() == before
