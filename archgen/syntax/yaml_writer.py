@@ -53,7 +53,7 @@ def _write_mapping(
 ) -> Iterator[str]:
     for key, value in data.items():
         element_path = (*parent_path, key)
-        yield from _write_entry(f"{indent}{_format_key(key)}:", value, indent, element_path, comments)
+        yield from _write_entry(f"{indent}{_format_text(key)}:", value, indent, element_path, comments)
 
 
 def _write_entry(
@@ -127,10 +127,6 @@ def _format_item(value: object) -> str:
 
 def _format_float(value: float) -> str:
     return ".nan" if value != value else repr(value)  # noqa: PLR0124 - what tells NaN
-
-
-def _format_key(key: str) -> str:
-    return _format_text(key)
 
 
 def _format_text(text: str) -> str:

@@ -250,7 +250,11 @@ class _CodeReader:
             for each in ast.walk(function):
                 targets = [each.target] if isinstance(each, ast.AnnAssign) else getattr(each, "targets", ())
                 value = each.value if isinstance(each, ast.Assign | ast.AnnAssign) else None
-                traces = () if value is None or _is_none(value) else (self._trace_fields(value, roots),)
+                traces = (
+                    ()
+                    if value is None or (isinstance(value, ast.Constant) and value.value is None)
+                    else (self._trace_fields(value, roots),)
+                )
                 for target in targets:
                     if isinstance(target, ast.Attribute):
                         unseen[target.attr] -= 1
@@ -373,10 +377,6 @@ def _walk_own(function: ast.AST) -> Iterator[ast.AST]:
 
 def _is_kept(attribute: ast.Attribute) -> bool:
     return isinstance(attribute.value, ast.Name) and attribute.value.id == "self"
-
-
-def _is_none(expression: ast.expr) -> bool:
-    return isinstance(expression, ast.Constant) and expression.value is None
 
 
 def _list_words(expression: ast.expr | None) -> Sequence[str]:

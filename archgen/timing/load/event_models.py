@@ -325,7 +325,7 @@ def leaving_model(state: PropagationState, arc: Arc) -> EventStreams | UnknownCa
     # Over many cores delays add up on the way, while the host, or the way as a whole, bounds all of them together.
     others = [_stream_ways(state, source, each, calls) for each in bounded_ways if each]
     models = [model for model in (leaving, *others) if not isinstance(model, UnknownCause)]
-    return min(models, key=_largest_jitter, default=leaving)
+    return min(models, key=lambda streams: max((stream.jitter for stream in streams), default=0), default=leaving)
 
 
 def answer_model(state: PropagationState, answer: Arc) -> EventStreams | UnknownCause:
@@ -349,10 +349,6 @@ def answer_model(state: PropagationState, answer: Arc) -> EventStreams | Unknown
         if server.period is None
         else delay_streams(request_model, spread + server.period + server.jitter)
     )
-
-
-def _largest_jitter(streams: EventStreams) -> int:
-    return max((stream.jitter for stream in streams), default=0)
 
 
 def _stream_ways(
