@@ -124,7 +124,7 @@ def unread_output(architecture: Architecture) -> Iterator[Diagnostic]:
             continue
         yield Diagnostic(
             "unread-output",
-            f"nobody {_reading_verb(architecture, output)} `{output.name}` of `{output.component}`",
+            f"nobody {'calls' if _kind_of_output(architecture, output) in _CALLED_KINDS else 'reads'} `{output.name}` of `{output.component}`",
             output.at,
             # A program that exists says more than this robot needs.
             severity=Severity.NOTE if output.component in existing else None,
@@ -154,10 +154,6 @@ _KIND_PHRASES = {"service": "a service", "action": "an action", "physical": "phy
 
 def _kind_of_output(architecture: Architecture, output: Output) -> str:
     return "physical" if is_physical(output) else architecture.flow_of(output)
-
-
-def _reading_verb(architecture: Architecture, output: Output) -> str:
-    return "calls" if _kind_of_output(architecture, output) in _CALLED_KINDS else "reads"
 
 
 def _target_components(architecture: Architecture, connection: Connection) -> Iterable[Component]:

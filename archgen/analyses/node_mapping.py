@@ -29,7 +29,11 @@ def unmapped_component(architecture: Architecture) -> Iterator[Diagnostic]:
         return
     nodes = nodes_of_components(architecture)
     for component in architecture.components.values():
-        if component.id in nodes or component.id in architecture.suspected_ids or _is_without_ros(component):
+        if (
+            component.id in nodes
+            or component.id in architecture.suspected_ids
+            or (component.ports and not any(map(uses_ros, component.ports)))
+        ):
             continue
         yield Diagnostic(
             "unmapped-component",
@@ -112,10 +116,6 @@ def _find_shared_components(architecture: Architecture) -> Iterator[tuple[Compon
 def _receives_messages(architecture: Architecture, entry: Input) -> bool:
     outputs = (architecture.outputs[o] for connection in entry.connections for o in connection.outputs)
     return uses_ros(entry) and any(uses_ros(output) for output in outputs)
-
-
-def _is_without_ros(component: Component) -> bool:
-    return bool(component.ports) and not any(map(uses_ros, component.ports))
 
 
 RULES = (

@@ -199,16 +199,14 @@ def incompatible_qos(architecture: Architecture) -> Iterator[Diagnostic]:
         )
         # Many ends of one topic have few different settings, and most of these agree.
         readers_by_qos = group_pairs((_list_qos(reader), reader) for reader in readers)
-        judge_pair = cache(_judge_settings)
+        judge_pair = cache(
+            lambda offers, requests: [tuple(find_qos_conflicts(*pair)) for pair in product(offers, requests)]
+        )
         for writer in writers:
             for requested, asking in readers_by_qos.items():
                 verdicts = judge_pair(_list_qos(writer), requested)
                 for reader in asking if any(verdicts) else ():
                     yield _report_qos_conflicts(architecture, topic, writer, reader, verdicts)
-
-
-def _judge_settings(offered: tuple[Qos, ...], requested: tuple[Qos, ...]) -> list[tuple[QosConflict, ...]]:
-    return [tuple(find_qos_conflicts(*pair)) for pair in product(offered, requested)]
 
 
 def _report_qos_conflicts(

@@ -121,15 +121,11 @@ def uncovered_requirement(architecture: Architecture) -> Iterator[Diagnostic]:
         if is_open and requirement.id not in misspelt_ids:
             yield Diagnostic(
                 "uncovered-requirement",
-                f"no component and no chain serves the requirement `{requirement.id}`{_title_suffix(requirement)}",
+                f"no component and no chain serves the requirement `{requirement.id}`{f' ({requirement.title})' if requirement.title != requirement.id else ''}",
                 requirement.at,
                 help=f"name `{requirement.id}` in `requirements` of the component or chain whose task it is",
                 element=requirement.id,
             )
-
-
-def _title_suffix(requirement: Requirement) -> str:
-    return "" if requirement.title == requirement.id else f" ({requirement.title})"
 
 
 def unjustified_component(architecture: Architecture) -> Iterator[Diagnostic]:

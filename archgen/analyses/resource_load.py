@@ -96,7 +96,7 @@ def _report_overload(
     heaviest = analysis.system.activities[activity_loads[0][1]]
     return Diagnostic(
         "overloaded-host",
-        f"`{name}` is {_describe_excess(utilisation / cores)}: what runs there takes {format_number(100 * utilisation / cores)} % of {_format_cores(cores)}",
+        f"`{name}` is {_describe_excess(utilisation / cores)}: what runs there takes {format_number(100 * utilisation / cores)} % of {f'its {cores} cores' if cores > 1 else 'its core'}",
         architecture.hosts[host_id].at,
         labels=(Label(heaviest.places.get("wcet", heaviest.at), f"`{heaviest.id}` takes most"),)
         if heaviest.at != NO_SPAN
@@ -136,11 +136,6 @@ def _describe_calls(analysis: Analysis, activity_id: str) -> str:
 def _describe_excess(utilisation: Fraction) -> str:
     """Describe a load (1 is all there is) at or above the rule's limit."""
     return "overloaded" if utilisation >= 1 else "loaded beyond its limit"
-
-
-def _format_cores(count: int) -> str:
-    """Format a number of cores with its possessive: "its 4 cores"."""
-    return "its core" if count == 1 else f"its {count} cores"
 
 
 def saturated_link(architecture: Architecture, analysis: Analysis, *, limit: Fraction) -> Iterator[Diagnostic]:

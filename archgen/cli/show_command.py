@@ -39,9 +39,8 @@ def command(words: tuple[str, ...], form: str, project: Path | None) -> None:
     checked_project = command_support.check_or_exit(project)
     lookup = make_lookup(checked_project.architecture, checked_project.findings)
     timed_kinds = {kind for word in words for kind, _ in element_names.find_elements(lookup, word)}
-    if checked_project.analysis is not None and not timed_kinds.isdisjoint(
-        {"requirement", "chain", "composed", "use case", "component", "node"}
-    ):
+    is_timed = checked_project.analysis is not None or checked_project.architecture.chains
+    if is_timed and not timed_kinds.isdisjoint({"requirement", "chain", "composed", "use case", "component", "node"}):
         # Only these say how often and how late; the bounds of chains take longer than all else here.
         from archgen.views.timing.timing_lookup import complete_with_chains
 

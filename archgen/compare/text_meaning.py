@@ -147,11 +147,13 @@ def _list_measures(text: str) -> list[str]:
     """Return the words of measure in a text, each with the number or sign in front of it: `22 objects` is no measure."""
     tokens = _list_tokens(text)
     pairs = zip(["", *tokens], tokens, strict=False)
-    return [word for previous, token in pairs if _is_measure(token) for word in (_keep_number(previous), token) if word]
-
-
-def _keep_number(token: str) -> str:
-    return "" if token[:1].isalpha() or token[:1] == "_" else token
+    return [
+        word
+        for previous, token in pairs
+        if _is_measure(token)
+        for word in ("" if previous[:1].isalpha() or previous[:1] == "_" else previous, token)
+        if word
+    ]
 
 
 def _is_measure(token: str) -> bool:

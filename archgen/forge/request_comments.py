@@ -74,12 +74,10 @@ def _write_order(request: OpenRequest, merge: BranchMerge) -> str:
         return ""
     if merge.order is None:
         return "Whichever is merged second does: they have to come together."
-    first, second = ([_name_request(ref, request) for ref in side] for side in merge.order)
+    first, second = (
+        ["this one" if ref == request.ref else f"#{ref.rpartition('/')[2]}" for ref in side] for side in merge.order
+    )
     return f"First {join_words(first)}, then {join_words(second)}, whose author has to look."
-
-
-def _name_request(ref: str, request: OpenRequest) -> str:
-    return "this one" if ref == request.ref else f"#{ref.rpartition('/')[2]}"
 
 
 def _list_items(merge: BranchMerge) -> Iterator[str]:

@@ -69,7 +69,8 @@ def _read_limits(body: MappingNode, element_id: str, diagnostics: list[Diagnosti
         limits.append(limit)
     place = entry.value.span if limits else entry.key_span
     if len(limits) != 2:  # noqa: PLR2004 - least and greatest
-        message = f"a range has two limits, the least and the greatest value: here {_count_words(len(limits))}"
+        count = {0: "is none", 1: "is one"}.get(len(limits), f"are {len(limits)}")
+        message = f"a range has two limits, the least and the greatest value: here {count}"
         diagnostics.append(_diagnose_value(message, place, "write `range: [0, 30]`; `.inf` is no limit", element_id))
         return ()
     least, greatest = limits
@@ -87,10 +88,6 @@ def _read_limits(body: MappingNode, element_id: str, diagnostics: list[Diagnosti
         diagnostics.append(_diagnose_value(message, place, "write it in one unit", element_id, *label))
         return ()
     return (least, greatest)
-
-
-def _count_words(number: int) -> str:
-    return {0: "is none", 1: "is one"}.get(number, f"are {number}")
 
 
 def _read_limit(item: ScalarNode) -> _WrittenLimit | None:

@@ -54,13 +54,11 @@ def _find_port(architecture: Architecture, shell_port: str, leaf: Output) -> Out
     """Return the output of a composed component that is named, or of a component that is named as a whole."""
     shell = architecture.shells.get(shell_port)
     if shell is not None:
-        return next((port for port in shell.outputs.values() if _is_passed_on(architecture, port, leaf)), None)
+        return next(
+            (port for port in shell.outputs.values() if leaf.id in architecture.leaf_ports_of("output", port.id)), None
+        )
     holder = architecture.shells.get(shell_port.rpartition(".")[0])
     return holder.outputs.get(shell_port.rpartition(".")[2]) if holder else None
-
-
-def _is_passed_on(architecture: Architecture, port: Output, leaf: Output) -> bool:
-    return leaf.id in architecture.leaf_ports_of("output", port.id)
 
 
 def list_described_outputs(architecture: Architecture) -> Iterator[tuple[Component, Output]]:
@@ -121,8 +119,5 @@ def find_passed_shell(architecture: Architecture, reader_id: str, connection: Co
         return None
     # A component inside may be called as the input is; `self` tells them apart.
     is_component = port_id in architecture.shells and not connection.written.startswith("self.")
-    return None if is_component or port_id not in _list_input_ids(architecture, holder) else holder
-
-
-def _list_input_ids(architecture: Architecture, shell_id: str) -> Collection[str]:
-    return {port.id for port in architecture.shells[shell_id].inputs.values()}
+    input_ids = () if is_component else [port.id for port in architecture.shells[holder].inputs.values()]
+    return holder if port_id in input_ids else None

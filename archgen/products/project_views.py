@@ -67,12 +67,14 @@ def list_rows(
     from archgen.views.tables import element_rows
 
     lookup = make_scoped_lookup(checked_project, options)
-    if kind == "requirements" and checked_project.analysis is not None and lookup.chains_for_requirement:
+    if kind == "requirements" and lookup.chains_for_requirement:
         from archgen.views.lookup import add_timing
-        from archgen.views.timing.timing_lookup import bound_chains
+        from archgen.views.timing.timing_lookup import analyse_with_chains, bound_chains
 
         # Whether a requirement is met may hang on a chain's deadline.
-        lookup = add_timing(lookup, bound_chains(checked_project.analysis, checked_project.architecture))
+        analysis, architecture = checked_project.analysis, checked_project.architecture
+        timing = bound_chains(analysis, architecture) if analysis else analyse_with_chains(architecture)
+        lookup = add_timing(lookup, timing)
     return element_rows.list_element_rows(lookup, kind)
 
 

@@ -48,7 +48,8 @@ def validate_document(document: YamlDocument) -> tuple[Diagnostic, ...]:
         data = _to_validator_data(document.root)
     wrong_places: list[tuple[ErrorPlace, str | None]] = []
     seen_paths = set[tuple[str | int, ...]]()
-    for error in _sort_by_weight(validator.iter_errors(data)):
+    # Wrong types first: what else the validator says of the same value follows from it and is then left out.
+    for error in sorted(validator.iter_errors(data), key=lambda error: error.kind.name != "type"):
         _record_error(document, error, diagnostics, wrong_places, seen_paths)
     # Only now: while errors are being located, their paths must still lead through an unchanged tree.
     for place, key in wrong_places:
@@ -99,11 +100,6 @@ _NUMERIC_KEY_STARTS = frozenset("0123456789+\0")
 """First characters of keys that get the mark: the validator's paths do not tell the key `0` from the index 0."""
 _INTEGER_LIMIT = 1 << 60
 """Larger than any number that the language allows, and small enough for the validator."""
-
-
-def _sort_by_weight(errors: Iterable[jsonschema_rs.ValidationError]) -> list[jsonschema_rs.ValidationError]:
-    """Sort wrong types first: what else the validator says of the same value follows from it and is then left out."""
-    return sorted(errors, key=lambda error: error.kind.name != "type")
 
 
 def _record_error(

@@ -42,7 +42,7 @@ def simulation_to_json(
             key: {
                 "load": float(observed.mean_load),
                 "largest_load": float(observed.largest_load),
-                "utilisation": _optional_float(bound_utilisation(analysis, key)),
+                "utilisation": None if (bound := bound_utilisation(analysis, key)) is None else float(bound),
             }
             for key, observed in result.hosts.items()
         },
@@ -155,10 +155,6 @@ def _distribution_to_json(distribution: DurationDistribution | None) -> Simulati
 
 def _bound_in_ms(value: TimingValue) -> float | None:
     return _ns_to_ms(upper_bound(value))
-
-
-def _optional_float(value: Fraction | None) -> float | None:
-    return None if value is None else float(value)
 
 
 def _ns_to_ms(value: Fraction | None) -> float | None:

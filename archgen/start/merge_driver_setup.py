@@ -128,12 +128,12 @@ def add_attribute(folder: Path) -> bool:
 def _is_set(content: bytes, pattern: bytes) -> bool:
     """Whether files of a pattern are merged by archgen. The last line counts: another driver behind ours would be taken."""
     lines = (line.split() for line in content.splitlines())
-    merge_lines = [words for words in lines if words[:1] == [pattern] and _sets_merge(words)]
+    merge_lines = [
+        words
+        for words in lines
+        if words[:1] == [pattern] and any(word.lstrip(b"-!").partition(b"=")[0] == b"merge" for word in words[1:])
+    ]
     return bool(merge_lines) and _ATTRIBUTE in merge_lines[-1]
-
-
-def _sets_merge(words: list[bytes]) -> bool:
-    return any(word.lstrip(b"-!").partition(b"=")[0] == b"merge" for word in words[1:])
 
 
 def configure_git(folder: Path) -> None:

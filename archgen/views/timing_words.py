@@ -22,6 +22,7 @@ def format_timing_sentence(timing: Timing | None) -> str:
     if timing is None:
         return ""
     execution_range = f"{timing.bcet} to {timing.wcet}" if timing.bcet and timing.wcet else ""
+    calls = [f"{name.rsplit('.', 1)[-1]} {count}" for name, count in timing.calls.items()]
     parts = (
         BEHAVIOUR_WORDS[timing.behaviour] if timing.behaviour else "",
         f"period {timing.period}" if timing.period else "",
@@ -39,7 +40,7 @@ def format_timing_sentence(timing: Timing | None) -> str:
         f"uses {', '.join(_format_uses(timing))}" if timing.uses else "",
         f"declared response {timing.response}" if timing.response else "",
         f"publishes only at times: {', '.join(_format_timed_outputs(timing))}" if timing.outputs else "",
-        f"calls for each activation: {', '.join(_format_calls(timing))}" if timing.calls else "",
+        f"calls for each activation: {', '.join(calls)}" if calls else "",
         f"priority {timing.priority}" if timing.priority is not None else "",
         f"deadline {timing.deadline}" if timing.deadline else "",
         name_cores(list_pinned_cores(timing)),
@@ -56,11 +57,6 @@ def _write_ordinal(number: int) -> str:
     """Return `1st`, `2nd`, `3rd`, `4th`, `11th`, `22nd`."""
     suffix = "th" if number // 10 % 10 == 1 else {1: "st", 2: "nd", 3: "rd"}.get(number % 10, "th")
     return f"{number}{suffix}"
-
-
-def _format_calls(timing: Timing) -> list[str]:
-    """Format `calls` as "port count"; ports by the last part of their id."""
-    return [f"{name.rsplit('.', 1)[-1]} {count}" for name, count in timing.calls.items()]
 
 
 def _describe_trigger(timing: Timing) -> str:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 from pathlib import Path
 
 import jsonschema_rs
@@ -269,6 +270,12 @@ def test_show_says_whether_the_chains_of_a_requirement_are_in_time(run: Run, tmp
     assert "  served by:\n    the chain k (missed)\n" in run("show", "R-1", "-C", tmp_path).out
     shown_chain = run("show", "k", "-C", tmp_path).out
     assert "  state:          missed\n  requirements:   R-1\n" in shown_chain
+    # Where nobody has written a time, nobody knows: `timing` and the site say so, too.
+    untimed = re.sub(r", timing: \{[^}]*\}", "", text)
+    (tmp_path / "archgen.yaml").write_text(untimed, encoding="utf-8")
+    assert "  state:          open\n" in run("show", "k", "-C", tmp_path).out
+    (listed,) = json.loads(run("list", "--of", "requirements", "--format", "json", "-C", tmp_path).out)
+    assert listed["state"] == "open"
 
 
 def test_a_terminal_of_80_columns_shows_progress_as_a_table(

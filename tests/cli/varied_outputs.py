@@ -52,7 +52,8 @@ def list_word_tables(data: bytes) -> Iterator[Rows]:
 
 
 def _read_paragraphs(cell: Any) -> str:  # noqa: ANN401 - as above
-    return _fold(" ".join("".join(each.itertext()) for each in cell.iter(f"{_WORD}p")))
+    breaks = {f"{_WORD}p", f"{_WORD}br"}
+    return _fold("".join(" " if each.tag in breaks else each.text or "" for each in cell.iter()))
 
 
 def list_sheet_tables(path: Path) -> Iterator[Rows]:

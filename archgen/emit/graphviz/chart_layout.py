@@ -315,15 +315,11 @@ def style_stretch_form(form: str, width: float, fill: str = "") -> DotAttributes
         "class": f'"bar {form}"',
         "style": f'"{style}"',
         "color": f'"{rim}"',
-        "fillcolor": f'"{_repeat_stripes(fill, width) if ":" in fill else fill}"',
+        # Two colours are stripes: one pair for every five points.
+        "fillcolor": f'"{":".join([fill] * (max(1, round(width / 5)) if ":" in fill else 1))}"',
         "penwidth": "0.6" if width > 2 else "0.2",  # noqa: PLR2004 - a hairline keeps its own width
         "label": '""',
     }
-
-
-def _repeat_stripes(fill: str, width: float) -> str:
-    """Repeat two colours, one pair for every five points."""
-    return ":".join([fill] * max(1, round(width / 5)))
 
 
 def fix_node_size(width: float, height: float) -> DotAttributes:

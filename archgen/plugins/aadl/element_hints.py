@@ -5,7 +5,7 @@ from __future__ import annotations
 from pathlib import Path as FilePath
 from typing import Any
 
-from archgen.plugins.aadl.aadl_tree import AadlConnection, AadlProperty, Path
+from archgen.plugins.aadl.aadl_tree import AadlProperty, Path
 from archgen.plugins.aadl.import_notes import NoteList
 from archgen.plugins.aadl.property_values import PropertyScope, read_first_text, read_texts, read_time_range
 from archgen.plugins.aadl.resolved_classifiers import ResolvedClassifier, ResolvedPart
@@ -29,13 +29,13 @@ def keep_thread(scope: PropertyScope, path: Path, thread: ResolvedClassifier | N
     functions: dict[str, dict[str, Any]] = {}
     for name, part in thread.parts.items() if thread else ():
         if part.category == "subprogram" and (sources := keep_sources(scope, (*path, name))):
-            own = {} if _is_library_function(part) else {"classifier": part.use.full_name}
+            own = (
+                {}
+                if part.use.full_name.lower().rpartition("::")[2] in {"function", ""}
+                else {"classifier": part.use.full_name}
+            )
             functions[part.written.name] = own | sources
     return {**hints, **({"functions": functions} if functions else {})}
-
-
-def _is_library_function(part: ResolvedPart) -> bool:
-    return part.use.full_name.lower().rpartition("::")[2] in {"function", ""}
 
 
 def keep_structure(structure: ClassifierStructure, scope: PropertyScope) -> dict[str, Any]:
@@ -46,7 +46,10 @@ def keep_structure(structure: ClassifierStructure, scope: PropertyScope) -> dict
         hints["annexes"] = list(resolved.annexes)
     library_ports = {name for name, port in resolved.ports.items() if port.owner.is_of_library}
     used_ports = {
-        end[0].lower() for connection in structure.access_connections.values() for end in _list_own_ends(connection)
+        end[0].lower()
+        for connection in structure.access_connections.values()
+        for end in (connection.source, connection.target)
+        if len(end) == 1
     }
     kept_ports = {
         key: dict(value)
@@ -76,11 +79,6 @@ def keep_structure(structure: ClassifierStructure, scope: PropertyScope) -> dict
         if flows := _keep_flows(structure, scope):
             hints["flows"] = flows
     return hints | _keep_data(structure, scope)
-
-
-def _list_own_ends(connection: AadlConnection) -> list[Path]:
-    """Return the ends of a connection that are features of what it stands in."""
-    return [end for end in (connection.source, connection.target) if len(end) == 1]
 
 
 def _keep_flows(structure: ClassifierStructure, scope: PropertyScope) -> dict[str, Any]:

@@ -241,7 +241,7 @@ class SimulatedTypes:
         return {
             "name": field.name,
             "java_name": name_java_field(field.name),
-            "java_method": f"with{_capitalise(name_java_field(field.name))}",
+            "java_method": f"with{name_java_field(field.name)[0].upper()}{name_java_field(field.name)[1:]}",
             "python_name": python_name,
             "type": self.describe(value_type, spellings),
             "default": _read_field_default(default, value_type),
@@ -258,10 +258,6 @@ def name_java_field(name: str) -> str:
     java_name = make_lower_camel_name(name)
     java_name = make_identifier_in("java", java_name)
     return f"{java_name}_" if java_name in _RECORD_METHODS else java_name
-
-
-def _capitalise(name: str) -> str:
-    return name[0].upper() + name[1:]
 
 
 def _name_kind(base_type: str) -> str:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
@@ -103,7 +102,10 @@ def _record_host(
     network = find_network_variables(steps) if ros != 1 else {}
     if network:
         # The file sets them for all that it starts.
-        entries = [{**each, "environment": _drop_variables(each["environment"], network)} for each in entries]
+        entries = [
+            {**each, "environment": [own for own in each["environment"] if network.get(own["name"]) != own["value"]]}
+            for each in entries
+        ]
     times = [each["simulated_time"] for each in entries if each["simulated_time"] is not None]
     return {
         "name": name,
@@ -125,10 +127,6 @@ def _record_host(
             if step.transitions and step.ros
         ],
     }
-
-
-def _drop_variables(environment: list[dict[str, str]], told: Mapping[str, str]) -> list[dict[str, str]]:
-    return [each for each in environment if told.get(each["name"]) != each["value"]]
 
 
 def _list_schedulings(entries: list[dict[str, Any]]) -> list[dict[str, str]]:

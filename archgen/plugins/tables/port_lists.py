@@ -138,7 +138,11 @@ def _import_input(
     wanted_name, producer = _split_source(project, text)
     name = wanted_name if name == text else name
     sources = _find_sources(project, component, wanted_name, producer)
-    if name == wanted_name and len(sources) == 1 and _has_source(component, sources[0]):
+    if (
+        name == wanted_name
+        and len(sources) == 1
+        and any(sources[0] in port.sources for port in component.inputs.values())
+    ):
         # A connection gave this source another name already.
         project.take_cell(cell, "inputs", component, sources[0][-1])
         return
@@ -173,10 +177,6 @@ def _import_input(
         project.add_warning(
             "unknown-reference", message, cell.span, "name it as an output somewhere, or write `WHAT from COMPONENT`"
         )
-
-
-def _has_source(component: ImportedComponent, source: tuple[str, ...]) -> bool:
-    return any(source in port.sources for port in component.inputs.values())
 
 
 def _split_source(project: ImportedProject, text: str) -> tuple[str, str]:

@@ -325,7 +325,7 @@ def leaving_model(state: PropagationState, arc: Arc) -> EventStreams | UnknownCa
     # Over many cores delays add up on the way, while the host, or the way as a whole, bounds all of them together.
     others = [_stream_ways(state, source, each, calls) for each in bounded_ways if each]
     models = [model for model in (leaving, *others) if not isinstance(model, UnknownCause)]
-    return min(models, key=lambda model: max((stream.jitter for stream in model), default=0), default=leaving)
+    return min(models, key=lambda streams: max((stream.jitter for stream in streams), default=0), default=leaving)
 
 
 def answer_model(state: PropagationState, answer: Arc) -> EventStreams | UnknownCause:

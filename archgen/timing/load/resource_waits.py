@@ -207,7 +207,7 @@ def find_rivals(state: PropagationState, own_ids: Sequence[str], resource_id: st
     blocking = 0
     for user in _look_up_users(state, resource_id):
         other, model = system.activities[user], state.event_models[user]
-        is_own = user in own_ids and not (len(own_ids) == 1 and _may_overlap(other))
+        is_own = user in own_ids and not (len(own_ids) == 1 and other.executor and other.callback_group is None)
         is_mate = thread_key(other) in waiting_keys and all(_never_overlap(system, each, other) for each in waiting)
         if model == () or is_own or is_mate:
             continue
@@ -226,11 +226,6 @@ def find_rivals(state: PropagationState, own_ids: Sequence[str], resource_id: st
 
 def _rank_priority(activity: Activity) -> int:
     return -1 if activity.priority is None else activity.priority
-
-
-def _may_overlap(activity: Activity) -> bool:
-    """Whether several activations of an activity may run at once."""
-    return bool(activity.executor) and activity.callback_group is None
 
 
 def _never_overlap(system: TimingSystem, first: Activity, second: Activity) -> bool:

@@ -100,15 +100,17 @@ def add_promises(
             row = replace(row, expected=_write_age(lookup, activity_names, interface))
         values = _group_values(ports, lambda each, key=key: getattr(each.promise, key))  # type: ignore[misc]
         if values:
-            row = _promise_figure(row, key, values, is_several=len(ports) > 1, is_complete=_is_complete(ports, key))
+            row = _promise_figure(
+                row,
+                key,
+                values,
+                is_several=len(ports) > 1,
+                is_complete=all(getattr(each.promise, key) is not None for each in ports),
+            )
         if values or row.promised or (row.expected and key != "max_age"):
             yield row
     yield from rows_by_name.values()
     yield from _list_value_rows(ports)
-
-
-def _is_complete(ports: Sequence[CountedPort], key: str) -> bool:
-    return all(getattr(each.promise, key) is not None for each in ports)
 
 
 def _group_values(

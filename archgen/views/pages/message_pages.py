@@ -71,7 +71,9 @@ class MessagePages:
             (
                 (message_link(message),),
                 inline_text.to_inlines(_KIND_TITLES[flow_of(message)].lower()),
-                _count_cell(len(fields)) if (fields := self._fields_of(message)) is not None else (),
+                (Text(str(len(fields)), sort_number=str(len(fields))),)
+                if (fields := self._fields_of(message)) is not None
+                else (),
                 self._size_cell(message),
                 inline_text.join_inlines(inline_text.type_link(each.name) for each in self._types_of(message)),
                 self._topic_cell(message),
@@ -226,7 +228,3 @@ class MessagePages:
         )
         columns = (Column("Given by", 1.5), Column("Owner", 0.9), Column("Type"), Column("Read by", 1.7))
         return Table(f"table:ports/{message}", "Outputs that give it, and who reads them", columns, rows)
-
-
-def _count_cell(count: int) -> Inlines:
-    return (Text(str(count), sort_number=str(count)),)

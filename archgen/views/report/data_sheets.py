@@ -198,7 +198,9 @@ def _make_flow_table(lookup: Lookup, component: Component, kind: str, flows: dic
         own = flows.pop(port.name[0].text, [])
         cells += [_write_flow(port, row, is_first=at == 0) for at, row in enumerate(own)]
         if not own:
-            cells.append((port.name, port.type, port.ends, (), (), (), _tell_medium(port)))
+            cells.append(
+                (port.name, port.type, port.ends, (), (), (), () if port.medium[0].text == "digital" else port.medium)
+            )
     cells += [
         ((Text("internal" if name.startswith("/") else name, muted=True),), *_write_figures(row, row.type))
         for name, own in flows.items()
@@ -216,10 +218,6 @@ def _make_flow_table(lookup: Lookup, component: Component, kind: str, flows: dic
     )
     table = Table(f"table:{kind}s/{component.id}", words[0], columns, tuple(cells), numbered=False, dense=True)
     return drop_empty_columns(table) if cells else None
-
-
-def _tell_medium(port: PortCells) -> Inlines:
-    return () if port.medium[0].text == "digital" else port.medium
 
 
 def _write_flow(port: PortCells, row: FlowRow, *, is_first: bool) -> tuple[Inlines, ...]:

@@ -94,7 +94,10 @@ class _SlideMaker:
         lead = "From what the robot senses to what it does, the worst first."
         if len(results) > _MAX_CHAINS:
             lead += f" The first {_MAX_CHAINS} of {len(results)} have a slide of their own."
-        blocks = (_say(lead), *self.printer.list_worst_chains("table:chains", len(results)))
+        blocks = (
+            Paragraph(inline_text.to_inlines(lead)),
+            *self.printer.list_worst_chains("table:chains", len(results)),
+        )
         yield Section("slide:chains", "Does it react in time?", blocks)
         for result in results[:_MAX_CHAINS]:
             yield from self._show_chain(result)
@@ -201,10 +204,6 @@ class _SlideMaker:
         for section in self.printer.make_open_points():
             blocks = [_cut_points(each) if isinstance(each, Table) else each for each in section.blocks]
             yield dataclasses.replace(section, anchor="slide:open_points", blocks=tuple(blocks))
-
-
-def _say(words: str) -> Paragraph:
-    return Paragraph(inline_text.to_inlines(words))
 
 
 def _head(words: str) -> Paragraph:

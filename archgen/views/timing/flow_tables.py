@@ -441,14 +441,14 @@ def make_partner_bullets(lookup: Lookup, activities: Sequence[Activity]) -> Bull
             (
                 *inline_text.owner_links(architecture, (owner,)),
                 *element_references.link_names(architecture, f" {words}"),
-                *((Text(f" · {contact}", muted=True),) if (contact := _find_contact(lookup, owner)) else ()),
+                *(
+                    (Text(f" · {known.contact}", muted=True),)
+                    if (known := architecture.partners.get(owner)) and known.contact
+                    else ()
+                ),
             )
         )
     return Bullets(tuple(items)) if items else None
-
-
-def _find_contact(lookup: Lookup, partner: str) -> str | None:
-    return lookup.architecture.partners[partner].contact if partner in lookup.architecture.partners else None
 
 
 def make_flow_sections(lookup: Lookup, element: Node | Component) -> list[Section]:

@@ -124,13 +124,8 @@ def display_period(value: TimingValue) -> str:
     """Format the period in ms of a rate in Hz; a rate of at most r has a period of at least 1/r."""
     if not value.value:
         return ""
-    inverse_sign = {"at least": "<= ", "at most": ">= "}.get(bound_sign(value) and _bound_side(value), "")
+    inverse_sign = {">= ": "<= ", "<= ": ">= "}.get(bound_sign(value), "")
     return inverse_sign + _format_time(10**9 / value.value, ROUND_HALF_UP)
-
-
-def _bound_side(value: TimingValue) -> str:
-    """Name the side of a value that has a sign."""
-    return "at least" if bound_sign(value) == ">= " else "at most"
 
 
 def display_bound(value: TimingValue, analysis: Analysis) -> str:

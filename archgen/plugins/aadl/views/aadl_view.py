@@ -305,7 +305,7 @@ def make_view(context: GenerationContext) -> GeneratedView:
     if context.is_whole:
         for declared in architecture.types.values():
             if declared.origin == "project" and not declared.generic:
-                types.name_type(declared.name, _find_flow(architecture, declared.name))
+                types.name_type(declared.name, flow_of_port(Output("", "", "", declared.name), declared))
     system = SystemWriter(context, programs.processes, types, names)
     system.write()
     program_packages = {NodeProcess.category: names["nodes"], NodeDevice.category: names["devices"]}
@@ -326,11 +326,6 @@ def make_view(context: GenerationContext) -> GeneratedView:
             "packages": [each for each in packages if each["classifiers"]],
         }
     )
-
-
-def _find_flow(architecture: Architecture, type_name: str) -> str:
-    """Return whether a type is data, or is called for: as a port with it is."""
-    return flow_of_port(Output("", "", "", type_name), architecture.types[type_name])
 
 
 def _make_package(name: str, classifiers: list[dict[str, Any]], comments: Iterable[str] = ()) -> dict[str, Any]:

@@ -174,7 +174,11 @@ class SliceMaker:
         first_names: dict[str | None, str] = {}
         for own_name, name in [(_write_private(each), _write_private(other)) for each, other in node.remaps.items()]:
             fault = next(
-                (fault for each in (own_name, name) if (fault := find_name_fault(each) or _find_bare(each))),
+                (
+                    fault
+                    for each in (own_name, name)
+                    if (fault := find_name_fault(each) or ("it is only a `/`" if each == "/" else ""))
+                ),
                 None,
             )
             if fault:
@@ -261,10 +265,6 @@ def nest_parameters(parameters: Mapping[str, Any]) -> dict[str, Any]:
 def _write_private(name: str) -> str:
     """Return a name; a private one of ROS 1 (`~map`) as both generations write it."""
     return f"~/{name[1:]}" if name.startswith("~") and name[1:2] not in {"", "/"} else name
-
-
-def _find_bare(name: str) -> str | None:
-    return "it is only a `/`" if name == "/" else None
 
 
 def _write_scheduling(scheduling: ProcessScheduling) -> dict[str, Any]:

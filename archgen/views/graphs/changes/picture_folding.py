@@ -143,7 +143,8 @@ def fold_neighbours(graph: Graph) -> Graph:
         cluster.id: cluster
         for cluster in graph.clusters
         # A sign before the title tells of a change of the group itself.
-        if cluster.title == cluster.tooltip and not any(_is_changed(box) for box in _list_members(graph, cluster))
+        if cluster.title == cluster.tooltip
+        and not any(box.change is not None or box.broken for box in _list_members(graph, cluster))
     }
     loud_ends = {end for arrow in graph.arrows if arrow.change or arrow.broken for end in (arrow.tail, arrow.head)}
     folded = {box.id: box for box in graph.boxes if box.cluster in quiet_frames and box.id not in loud_ends}
@@ -163,10 +164,6 @@ def fold_neighbours(graph: Graph) -> Graph:
         arrows=arrows,
         clusters=tuple(cluster for cluster in graph.clusters if cluster.id not in quiet_frames),
     )
-
-
-def _is_changed(box: Box) -> bool:
-    return box.change is not None or box.broken
 
 
 def _list_members(graph: Graph, cluster: Cluster) -> list[Box]:
