@@ -10,7 +10,7 @@ from archgen.bringup.plan_shapes import StartStep
 from archgen.bringup.start_plan import make_start_plan
 from archgen.model.agreed_terms import GENERAL_TERMS, find_agreement
 from archgen.model.architecture import Architecture
-from archgen.model.parameter import format_parameter
+from archgen.model.parameter import describe_types, format_parameter
 from archgen.model.partner_interfaces import (
     ParameterSetter,
     SharedFrame,
@@ -31,7 +31,7 @@ from archgen.views import inline_text, start_phrases
 from archgen.views.agreement.agreement_content import AgreementContent
 from archgen.views.agreement.interface_record import InterfaceRecord
 from archgen.views.agreement.term_changes import AgreementChanges
-from archgen.views.elements.parameter_blocks import describe_limits, describe_types
+from archgen.views.elements.parameter_blocks import describe_limits
 from archgen.views.graphs.element_boxes import join_owner_titles
 from archgen.views.sequences.sequence_blocks import make_step_table
 from archgen.views.shapes import (

@@ -10,6 +10,7 @@ from archgen.model.architecture import Annotated
 from archgen.model.component import Connection, Input, Output
 from archgen.model.component_nesting import find_relied_output
 from archgen.model.node import Topic
+from archgen.model.parameter import describe_types
 from archgen.model.parameter_values import find_effective_parameters
 from archgen.model.port_media import name_on_medium, nature_of, uses_ros, word_of_medium
 from archgen.views.elements import parameter_blocks, port_tables
@@ -219,7 +220,7 @@ def _operation_rows(lookup: Lookup) -> _Rows:
     for group in lookup.shown_groups():
         for component in lookup.shown_components(group):
             for each in component.operations.values():
-                types = (parameter_blocks.describe_types(types or "") for types in (each.request, each.response))
+                types = (describe_types(types or "") for types in (each.request, each.response))
                 yield each.id, component.id, *types, each.call, each.visibility, each.at
 
 
