@@ -5,8 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from archgen.diagnostics import Diagnostic, Label, Severity, Span, find_closest, join_words
-from archgen.model.annotated_elements import AnnotatedElement, list_annotated_elements
-from archgen.model.architecture import Architecture
+from archgen.model.architecture import AnnotatedElement, Architecture, list_annotated_elements
 from archgen.model.element_annotations import PropertyDeclaration, find_property_fault, shorten_value
 
 

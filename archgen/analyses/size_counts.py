@@ -9,8 +9,7 @@ from typing import Literal
 
 from archgen.frozen import dataclass
 from archgen.grouping import group_pairs
-from archgen.model.annotated_elements import list_annotated_elements
-from archgen.model.architecture import Architecture
+from archgen.model.architecture import Architecture, list_annotated_elements
 from archgen.model.component import Component
 from archgen.model.element_annotations import PropertyDeclaration
 from archgen.model.port_media import uses_ros

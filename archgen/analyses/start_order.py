@@ -8,8 +8,7 @@ from typing import TYPE_CHECKING
 from archgen.derivation.ros_names import shared_topic_names
 from archgen.diagnostics import Diagnostic, Label, Severity, Span, did_you_mean, join_words
 from archgen.model.architecture import Architecture
-from archgen.model.node import Node, Topic
-from archgen.model.start_up import DEFAULT_PHASE, NO_START
+from archgen.model.node import DEFAULT_PHASE, NO_START, Node, Topic
 
 if TYPE_CHECKING:
     from archgen.bringup.plan_shapes import DroppedWait, StartPlan

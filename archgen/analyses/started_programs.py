@@ -9,7 +9,7 @@ from archgen.derivation.wire.running_state import ANY_NODE, RunningStates
 from archgen.diagnostics import Diagnostic, Label, Severity, Span
 from archgen.model.architecture import Architecture
 from archgen.model.declared_timing import Timing
-from archgen.model.node import Endpoint, Node
+from archgen.model.node import NO_START, SIGN_KEYS, Endpoint, Node, StartUp
 from archgen.model.process_scheduling import (
     MAX_PRIORITY,
     find_process_scheduling,
@@ -17,7 +17,6 @@ from archgen.model.process_scheduling import (
     list_pinned_cores,
     list_process_timings,
 )
-from archgen.model.start_up import NO_START, SIGN_KEYS, StartUp
 
 
 def shared_port(architecture: Architecture) -> Iterator[Diagnostic]:

@@ -8,10 +8,9 @@ from typing import Literal
 
 from archgen.diagnostics.source_span import NO_SPAN, Span
 from archgen.frozen import dataclass, field
-from archgen.model.node import NodeStatus
+from archgen.model.node import PHASES, LifecycleState, NodeStatus, ReadyConditions, StartPhase
 from archgen.model.process_scheduling import NO_SCHEDULING, ProcessScheduling
 from archgen.model.quantity import Quantity
-from archgen.model.start_up import PHASES, LifecycleState, ReadyConditions, StartPhase
 
 StepKind = Literal["program", "node", "container", "composable"]
 WaitReason = Literal["container", "after", "service", "data", "sampled", "optional", "manages", "managed"]

@@ -17,11 +17,10 @@ from archgen.bringup.plan_shapes import RosLaunch
 from archgen.bringup.program_names import ProgramNames
 from archgen.model.architecture import Architecture
 from archgen.model.deployment import Container
-from archgen.model.node import Node
+from archgen.model.node import NO_START, Node
 from archgen.model.parameter_values import canonical_name, find_declarations
 from archgen.model.ros_distro import is_ros_1
 from archgen.model.runtime_facts import MANY_THREADED, find_container_threads
-from archgen.model.start_up import NO_START
 
 MAX_GUARDED_PORT = 1023
 """Up to this one, ports belong to the administrator."""

@@ -24,10 +24,9 @@ from archgen.frozen import replace
 from archgen.grouping import group_pairs
 from archgen.model.architecture import Architecture
 from archgen.model.deployment import Container
-from archgen.model.node import Node
+from archgen.model.node import DEFAULT_PHASE, NO_START, PHASES, Node, ReadyConditions, StartPhase
 from archgen.model.process_scheduling import NO_SCHEDULING, find_process_scheduling
 from archgen.model.ros_distro import is_ros_1
-from archgen.model.start_up import DEFAULT_PHASE, NO_START, PHASES, ReadyConditions, StartPhase
 
 _NETWORK_VARIABLE = re.compile(r"(?:ROS|RMW|FASTDDS|FASTRTPS|CYCLONEDDS|ZENOH)_")
 _UNSAFE_IN_FILES = re.compile(r"[^A-Za-z0-9_.-]+")

@@ -19,9 +19,8 @@ from archgen.diagnostics import order_naturally
 from archgen.grouping import group_pairs
 from archgen.model.architecture import Architecture, PortEdge
 from archgen.model.graph_search import find_strong_components
-from archgen.model.node import Node
+from archgen.model.node import NO_START, Node, StartTarget
 from archgen.model.port_media import is_physical
-from archgen.model.start_up import NO_START, StartTarget
 
 _WEIGHT_BASE = 1 << 12
 """More waits of less need than this do not outweigh one of more need."""

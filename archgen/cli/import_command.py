@@ -328,7 +328,7 @@ def _summarise_slices(plan: ImportPlan, *, is_written: bool) -> Iterator[str]:
 
 
 def _write_plan(plan: ImportPlan, sources: Sequence[Path], *, quiet: bool) -> None:
-    from archgen.edit.import_source import write_source_records
+    from archgen.edit.earlier_import import write_source_records
     from archgen.emit import new_files
     from archgen.emit.file_tree import replace_file
     from archgen.regular_files import holds_bytes

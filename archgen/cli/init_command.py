@@ -147,20 +147,18 @@ def _has_project(target: Path) -> bool:
 def _set_up_merge_driver(target: Path) -> None:
     """Let git merge slices by what they say: say what was written and run, and what is left to do."""
     from archgen.git import GitError, NoRepositoryError
-    from archgen.start import merge_driver_setup
+    from archgen.start import project_plan
 
     with command_support.explain_write_errors():
-        for folder in (target, *merge_driver_setup.list_outer_libraries(target)):
-            path = folder / merge_driver_setup.ATTRIBUTES_FILE
-            if merge_driver_setup.add_attribute(folder):
+        for folder in (target, *project_plan.list_outer_libraries(target)):
+            path = folder / project_plan.ATTRIBUTES_FILE
+            if project_plan.add_attribute(folder):
                 command_support.print_written(path, "merge driver; commit it for everybody")
             else:
                 click.echo(f"kept {command_support.shorten_path(path)}: it names the merge driver already")
-    commands = [
-        merge_driver_setup.format_setting(*setting) for setting in merge_driver_setup.list_driver_settings().items()
-    ]
+    commands = [project_plan.format_setting(*setting) for setting in project_plan.list_driver_settings().items()]
     try:
-        merge_driver_setup.configure_git(target)
+        project_plan.configure_git(target)
     except NoRepositoryError:
         click.echo("There is no git repository yet. After `git init`, in this clone and in every other one, call")
     except GitError as error:
@@ -175,7 +173,7 @@ def _set_up_merge_driver(target: Path) -> None:
 def _set_up_merge_hook(target: Path) -> None:
     """Let git check the project after each merge, and say what there is."""
     from archgen.git import GitError
-    from archgen.start.merge_driver_setup import install_merge_hook
+    from archgen.start.project_plan import install_merge_hook
 
     try:
         with command_support.explain_write_errors():

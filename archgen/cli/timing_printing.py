@@ -14,7 +14,7 @@ from archgen.cli.shared_options import find_asked_variants
 from archgen.diagnostics import did_you_mean, format_json, join_first, make_visible
 from archgen.diagnostics.text_columns import find_width, wrap_line
 from archgen.emit.data import timing_json
-from archgen.emit.terminal import chain_remedies, chain_text, timing_answers, timing_text
+from archgen.emit.terminal import chain_remedies, chain_text, timing_text
 from archgen.emit.terminal.findings_text import wants_colour
 from archgen.emit.terminal.state_paint import paint_states
 from archgen.frozen import dataclass
@@ -66,7 +66,7 @@ def print_timing_summary(request: TimingRequest) -> None:
         documents = {"present": timing_json.timing_to_json(*present), "changed": timing_json.timing_to_json(*changed)}
         _print_json({"version": timing_json.VERSION, "set": list(request.overrides), **documents})
     else:
-        _print_lines(timing_answers.format_timing_changes(present, changed, request.overrides, find_width(sys.stdout)))
+        _print_lines(chain_text.format_timing_changes(present, changed, request.overrides, find_width(sys.stdout)))
 
 
 def print_chain(request: TimingRequest, chain_id: str) -> None:
@@ -98,9 +98,9 @@ def print_reasons(request: TimingRequest, word: str) -> None:
             raise_usage_error(str(error))
     steps = [line for name in names for line in explain_word(analysis, chains, name)]
     if request.as_json:
-        _print_json(timing_answers.reasoning_to_json(word, steps))
+        _print_json(chain_text.reasoning_to_json(word, steps))
     else:
-        _print_lines(timing_answers.format_reasoning(steps))
+        _print_lines(chain_text.format_reasoning(steps))
 
 
 def print_paths(request: TimingRequest, source: str, target: str, path_count: int) -> None:
@@ -131,9 +131,9 @@ def print_sensitivity(request: TimingRequest, chain_id: str) -> None:
     result = _find_chain(chains, chain_id)
     ranking = find_sensitivity(request.architecture, request.architecture.chains[chain_id], analyse_for_chains, chains)
     if request.as_json:
-        _print_json(timing_answers.sensitivity_to_json(result, ranking))
+        _print_json(chain_text.sensitivity_to_json(result, ranking))
     else:
-        _print_lines(timing_answers.format_sensitivity(result, analysis, ranking, find_width(sys.stdout)))
+        _print_lines(chain_text.format_sensitivity(result, analysis, ranking, find_width(sys.stdout)))
 
 
 def print_budget(request: TimingRequest, chain_id: str) -> None:

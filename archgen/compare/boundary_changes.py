@@ -7,6 +7,7 @@ from collections.abc import Iterable, Iterator, Mapping
 
 from archgen.analyses.qos_compatibility import find_qos_conflicts
 from archgen.compare.architecture_version import ArchitectureVersion
+from archgen.compare.asked_limits import TimingPair
 from archgen.compare.comparison import BoundaryChange, BoundaryKind, FigureChange, FigureKey, WireNames
 from archgen.compare.interface_figures import (
     RECEIVER_NAMES,
@@ -16,7 +17,6 @@ from archgen.compare.interface_figures import (
     is_same_figure,
 )
 from archgen.compare.matched_ids import MatchedIds
-from archgen.compare.timing_pair import TimingPair
 from archgen.compare.version_pair import VersionPair
 from archgen.frozen import dataclass, replace
 from archgen.grouping import group_pairs

@@ -6,6 +6,7 @@ from collections import defaultdict
 from collections.abc import Iterator, Sequence
 
 from archgen.compare.agreements import AgreementJudge, names_change
+from archgen.compare.asked_limits import TimingPair, is_rewording
 from archgen.compare.comparison import ChainChange, Change, Comparison, LimitChange, PartnerBreak
 from archgen.compare.concerned_owners import find_concerned_owners
 from archgen.compare.losses.change_context import ChangeContext, PartnerLoss
@@ -16,8 +17,13 @@ from archgen.compare.losses.changed_definitions import (
     find_retyped_outputs,
 )
 from archgen.compare.losses.changed_meanings import find_changed_frames, find_changed_meanings, find_changed_parameters
-from archgen.compare.losses.fallen_figures import find_fallen_limits, find_overloaded_cores, find_saturated_links
-from archgen.compare.losses.foreign_edits import find_foreign_edits
+from archgen.compare.losses.fallen_figures import (
+    find_chains_made_late,
+    find_fallen_limits,
+    find_overloaded_cores,
+    find_saturated_links,
+    find_weakened_deadlines,
+)
 from archgen.compare.losses.lost_connections import (
     find_cut_steps,
     find_lost_connections,
@@ -25,7 +31,6 @@ from archgen.compare.losses.lost_connections import (
     find_renamed_sources,
     find_unmade_connections,
 )
-from archgen.compare.losses.missed_deadlines import find_chains_made_late, find_weakened_deadlines
 from archgen.compare.losses.parted_ends import find_parted_ends, find_renamed_topics
 from archgen.compare.losses.separated_causes import CauseSeparator
 from archgen.compare.losses.timing_causes import TimingCauses
@@ -33,10 +38,9 @@ from archgen.compare.losses.weakened_demands import (
     find_rewritten_requirements,
     find_unserved_requirements,
     find_weakened_policies,
+    find_weakened_words,
 )
-from archgen.compare.losses.weakened_outputs import find_weakened_outputs, find_weakened_sizes
-from archgen.compare.losses.weakened_words import find_weakened_words
-from archgen.compare.timing_pair import TimingPair, is_rewording
+from archgen.compare.losses.weakened_outputs import find_foreign_edits, find_weakened_outputs, find_weakened_sizes
 from archgen.diagnostics import Severity
 from archgen.frozen import replace
 from archgen.model.project_settings import AcceptedChange, BreakPolicy, ReviewSettings

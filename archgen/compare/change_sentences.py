@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from archgen.compare.comparison import Change
-from archgen.compare.connection_maps import RewiredInput
 from archgen.compare.element_sentences import (
     describe_field_changes,
     describe_lost_effects,
@@ -20,7 +19,7 @@ from archgen.compare.key_phrases import (
     tick_names,
 )
 from archgen.compare.kinds import ELEMENT_KINDS
-from archgen.compare.version_pair import ComparedElement, VersionPair
+from archgen.compare.version_pair import ComparedElement, RewiredInput, VersionPair
 from archgen.derivation import ros_names
 from archgen.model.quantity import Quantity
 

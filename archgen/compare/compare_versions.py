@@ -10,7 +10,14 @@ from fractions import Fraction
 from typing import Literal
 
 from archgen.compare.architecture_version import ArchitectureVersion
-from archgen.compare.asked_limits import compare_limits
+from archgen.compare.asked_limits import (
+    TimingPair,
+    analyse_timing_pair,
+    can_affect_timing,
+    compare_limits,
+    find_activity_owners,
+    is_rewording,
+)
 from archgen.compare.boundary_changes import find_boundary_changes
 from archgen.compare.breaking_changes import find_idle_acceptances, mark_breaking_changes, stricter_policy
 from archgen.compare.change_listing import find_changes
@@ -24,13 +31,6 @@ from archgen.compare.losses.weakened_demands import list_policy_partners
 from archgen.compare.match_elements import match_elements
 from archgen.compare.matched_ids import MatchedIds
 from archgen.compare.review_facts import ReviewFacts
-from archgen.compare.timing_pair import (
-    TimingPair,
-    analyse_timing_pair,
-    can_affect_timing,
-    find_activity_owners,
-    is_rewording,
-)
 from archgen.compare.type_edits import trace_origins
 from archgen.diagnostics import Diagnostic, Severity
 from archgen.diagnostics.finding_identity import identify_finding, match_findings

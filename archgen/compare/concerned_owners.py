@@ -5,10 +5,9 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 
 from archgen.compare.comparison import BoundaryChange, ChainChange, Change, LimitChange, LoadChange
-from archgen.compare.connection_maps import ConnectionMap
 from archgen.compare.element_sentences import find_outer_messages
 from archgen.compare.kinds import Effect, find_effect
-from archgen.compare.version_pair import ComparedElement, ElementKey, VersionPair
+from archgen.compare.version_pair import ComparedElement, ConnectionMap, ElementKey, VersionPair
 from archgen.diagnostics.natural_order import order_naturally
 
 _MEANING_KEYS = frozenset({"", "type", "description"})

@@ -15,7 +15,7 @@ from archgen.compare.change_sentences import SURE_CONFIDENCE, note_confidence
 from archgen.compare.comparison import Change, ChangeKind, Comparison, PartnerBreak
 from archgen.compare.key_phrases import compare_field_lines, tick_names
 from archgen.compare.kinds import ELEMENT_KINDS
-from archgen.compare.reshaped_components import find_reshapings
+from archgen.compare.reshaping import find_reshapings
 from archgen.compare.type_edits import find_type_edits
 from archgen.diagnostics import join_words, keep_first, order_naturally
 from archgen.frozen import dataclass

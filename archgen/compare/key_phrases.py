@@ -16,7 +16,7 @@ from archgen.compare.version_pair import VersionPair
 from archgen.diagnostics import fit_lines, join_words, keep_first
 from archgen.frozen import NamedTuple
 from archgen.model.architecture import Architecture
-from archgen.model.start_up import DEFAULT_PHASE, PHASES
+from archgen.model.node import DEFAULT_PHASE, PHASES
 
 _PART_SEPARATOR = "---"
 FieldPlace = tuple[int, str]

@@ -8,7 +8,7 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from archgen.compare.change_sentences import describe_change
 from archgen.compare.comparison import Change, Comparison
 from archgen.compare.key_phrases import name_partner, tick_names
-from archgen.compare.kinds.component_type_kind import OWN_KEYS, PART_MARK
+from archgen.compare.kinds.functional_kinds import OWN_KEYS, PART_MARK
 from archgen.compare.normal_values import to_plain_data
 from archgen.compare.version_pair import VersionPair
 from archgen.diagnostics import join_words

@@ -1,29 +1,121 @@
-"""What one node uses on the robot, held against what the design says of it: names, types, quality of service."""
+"""What one node uses on the robot, held against the design: names, types, quality of service; and what to write to make
+them agree.
+"""
 
 from __future__ import annotations
 
 from collections import defaultdict
-from collections.abc import Callable, Collection, Iterable, Iterator, Sequence
+from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
+from typing import Any
 
 from archgen.analyses.qos_compatibility import find_qos_conflicts
-from archgen.conformance.model_remedy import (
-    ModelRemedy,
-    add_internal,
-    name_endpoint,
-    qualify_endpoint,
-    show_policy,
-    type_endpoint,
-)
 from archgen.conformance.observed_robot import ObservedEndpoint, ObservedNode, ObservedRobot
 from archgen.conformance.seen_record import name_end
 from archgen.derivation.ros_names import shared_topic_names
-from archgen.diagnostics import Diagnostic, Label, Severity, first_written_span, join_words
+from archgen.diagnostics import NO_SPAN, Diagnostic, Label, Severity, Span, first_written_span, join_words
 from archgen.frozen import NamedTuple, dataclass, field, replace
 from archgen.grouping import group_pairs
 from archgen.model.architecture import Architecture
 from archgen.model.common_callbacks import is_common_callback
 from archgen.model.node import Endpoint, Node
+from archgen.model.parameter_values import EffectiveParameter
 from archgen.model.port_media import ROS
+
+
+class ModelRemedy(NamedTuple):
+    """Values below a key of a node's description, or one that stands where it is written (`at`).
+
+    `rule` and `message` are those of the finding that it ends; where the design says nothing there is none, and the message says what it
+    will say. `path` begins behind the node. An entry in short form holds what its `short_key` does.
+    """
+
+    rule: str
+    message: str
+    element: str
+    node: str
+    path: tuple[str, ...]
+    values: Mapping[str, Any]
+    short_key: str = ""
+    at: Span = NO_SPAN
+    is_gap: bool = False
+    """Whether the design says nothing of it yet, so that nothing of it is taken back."""
+
+
+def _name_endpoint(rule: str, message: str, node: Node, endpoint: Endpoint, seen: ObservedEndpoint) -> ModelRemedy:
+    """Give an end of the design the name that it has on the robot."""
+    path, short_key = _find_entry(node, endpoint)
+    element = endpoint.port or node.id
+    is_gap = endpoint.name is None
+    return ModelRemedy(
+        rule, message, element, node.id, path, {short_key: seen.name}, short_key=short_key, is_gap=is_gap
+    )
+
+
+def _type_endpoint(rule: str, message: str, node: Node, endpoint: Endpoint, seen: ObservedEndpoint) -> ModelRemedy:
+    """Give an end of the design the type that it has on the robot: where its type is written, else at the node."""
+    path, short_key = _find_entry(node, endpoint)
+    return ModelRemedy(
+        *(rule, message, endpoint.port or node.id, node.id, path, {"message": seen.message}, short_key),
+        at=endpoint.message_at if endpoint.message is not None else NO_SPAN,
+        is_gap=endpoint.message is None,
+    )
+
+
+def _qualify_endpoint(
+    rule: str, message: str, node: Node, endpoint: Endpoint, policies: Mapping[str, Any]
+) -> ModelRemedy:
+    """Give an end of the design policies of its quality of service."""
+    path, short_key = _find_entry(node, endpoint)
+    # A policy without a limit is one that is not written.
+    values = {policy: _show_policy(value) for policy, value in policies.items() if value is not None}
+    is_gap = not endpoint.qos.written
+    return ModelRemedy(
+        rule, message, endpoint.port or node.id, node.id, path, {"qos": values}, short_key, is_gap=is_gap
+    )
+
+
+def _add_internal(rule: str, message: str, node: Node, key: str, seen: ObservedEndpoint) -> ModelRemedy:
+    """Give a node an end that no component of it knows."""
+    values = {_name_key(seen.use): seen.name, **({"message": seen.message} if seen.message else {})}
+    return ModelRemedy(rule, message, node.id, node.id, ("internal", seen.use, key), values)
+
+
+def set_parameter(rule: str, message: str, node: Node, designed: EffectiveParameter, value: object) -> ModelRemedy:
+    """Give a parameter the value that it has on the robot: at the node, whose values count most."""
+    at = designed.at if designed.origin == "node" else NO_SPAN
+    return ModelRemedy(rule, message, node.id, node.id, ("parameters",), {designed.name: value}, at=at)
+
+
+def rename_node(rule: str, message: str, node: Node, full_name: str) -> ModelRemedy:
+    """Give a node the name and the namespace that it has on the robot."""
+    namespace, _, name = full_name.rpartition("/")
+    old_namespace, _, old_name = node.full_name.rpartition("/")
+    values = {"name": name} if name != old_name else {}
+    values |= {"namespace": namespace or "/"} if namespace != old_namespace else {}
+    return ModelRemedy(rule, message, node.id, node.id, (), values)
+
+
+def _find_entry(node: Node, endpoint: Endpoint) -> tuple[tuple[str, ...], str]:
+    """Return where a node says what an end is, and what its short form holds."""
+    used = [
+        each.key
+        for each in node.uses
+        if each.use == endpoint.use and (each.port == endpoint.port if endpoint.port else each.at == endpoint.at)
+    ]
+    port = endpoint.port or ""
+    component, _, name = port.rpartition(".")
+    key = used[0] if used else name if len(node.implements) == 1 else f"{component.rpartition('.')[2]}.{name}"
+    return (*(("internal",) if endpoint.internal else ()), endpoint.use, key), _name_key(endpoint.use)
+
+
+def _name_key(use: str) -> str:
+    return "topic" if use in {"publishes", "subscribes"} else "name"
+
+
+def _show_policy(value: object) -> object:
+    """Return the value of a policy as the language writes it."""
+    return "unlimited" if value is None else value if isinstance(value, int) else str(value)
+
 
 VERBS = {"publishes": "publish", "subscribes": "subscribe to", "serves": "serve", "calls": "call"}
 """What a sentence calls each use behind `does not`."""
@@ -102,7 +194,7 @@ class EndpointComparer:
                 comparison.renamed.append(endpoint)
                 finding = _report_other_name(nodes[0], endpoint, seen, self._robot.where)
                 comparison.findings.append(finding)
-                self.remedies.append(name_endpoint(finding.rule, finding.message, nodes[0], endpoint, seen))
+                self.remedies.append(_name_endpoint(finding.rule, finding.message, nodes[0], endpoint, seen))
         unknown = [each for each in observed if each.name is None]
         for endpoint in filter(self._is_expected, missing):
             if not observed_node.has_all_uses or any(_may_be(endpoint, each) for each in unknown):
@@ -142,12 +234,12 @@ class EndpointComparer:
 
     def _compare_types(self, node: Node, pair: EndpointPair) -> Iterator[Diagnostic]:
         for finding in compare_types(node, pair, self._robot.where):
-            self.remedies.append(type_endpoint(finding.rule, finding.message, node, *pair))
+            self.remedies.append(_type_endpoint(finding.rule, finding.message, node, *pair))
             self.differing.add(name_end(pair.designed))
             yield finding
         if pair.designed.message is None and pair.observed.message is not None:
             message = f"`{pair.designed.name}` has the type `{pair.observed.message}`"
-            self.remedies.append(type_endpoint("", message, node, *pair))
+            self.remedies.append(_type_endpoint("", message, node, *pair))
 
     def compare_qos(self, pairs: Iterable[EndpointPair]) -> Iterator[Diagnostic]:
         """Yield where the quality of service is another one than is written, or where nothing is written, no longer fits."""
@@ -168,14 +260,14 @@ class EndpointComparer:
                 yield from misfits
                 self.differing |= {name_end(pair.designed)} if misfits else set()
                 if not misfits:
-                    words = join_words([f"`{show_policy(pair.observed.qos[each])}`" for each in differing])
+                    words = join_words([f"`{_show_policy(pair.observed.qos[each])}`" for each in differing])
                     message = f"`{pair.designed.name}` is {words} at `{pair.designed.node}`"
                     self._add_qos_remedy("", message, pair, differing)
 
     def _add_qos_remedy(self, rule: str, message: str, pair: EndpointPair, policies: Iterable[str]) -> None:
         node = self._architecture.nodes[pair.designed.node]
         values = {policy: pair.observed.qos[policy] for policy in policies}
-        self.remedies.append(qualify_endpoint(rule, message, node, pair.designed, values))
+        self.remedies.append(_qualify_endpoint(rule, message, node, pair.designed, values))
 
     def _list_told(self, full_name: str, designed: Collection[tuple[str, str | None]] = ()) -> list[ObservedEndpoint]:
         """Return what a node uses, without what ROS and its libraries give each node, unless the design has it there."""
@@ -225,7 +317,7 @@ class EndpointComparer:
             message, help_line = f"{what}, which {known} the design does not say", f"write `{_write_name(seen)}` there"
             place = first_written_span(candidates[0].at, node.at)
             if len(candidates) == 1:
-                self.remedies.append(name_endpoint("not-in-model", message, node, candidates[0], seen))
+                self.remedies.append(_name_endpoint("not-in-model", message, node, candidates[0], seen))
             return Diagnostic("not-in-model", message, place, Severity.NOTE, labels, help_line, node.id)
         entry = f"{_write_name(seen)}{f', message: {seen.message}' if seen.message else ''}"
         key = (seen.name or "").rpartition("/")[2] or "port"
@@ -235,7 +327,7 @@ class EndpointComparer:
         is_minor = seen.is_conditional or (seen.flow == "topic" and seen.name in self._shared)
         severity = Severity.NOTE if is_minor else None
         message = f"{what}, and the design does not say so"
-        self.remedies.append(add_internal("not-in-model", message, node, key, seen))
+        self.remedies.append(_add_internal("not-in-model", message, node, key, seen))
         return Diagnostic("not-in-model", message, node.at, severity, labels, help_line, node.id)
 
     def _list_differing(self, pair: EndpointPair) -> list[str]:
@@ -248,7 +340,7 @@ class EndpointComparer:
 
     def _report_policy(self, pair: EndpointPair, policy: str) -> Diagnostic:
         endpoint, seen = pair
-        designed, observed = (f"`{show_policy(each)}`" for each in (getattr(endpoint.qos, policy), seen.qos[policy]))
+        designed, observed = (f"`{_show_policy(each)}`" for each in (getattr(endpoint.qos, policy), seen.qos[policy]))
         key = policy.replace("_", " ")
         message = f"the {key} of `{endpoint.name}` is {observed} {self._robot.where}, and {designed} in the design"
         new_text = f"write `qos: {{{policy}: {observed.strip('`')}}}`"

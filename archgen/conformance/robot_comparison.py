@@ -6,8 +6,13 @@ from collections import defaultdict
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from types import MappingProxyType
 
-from archgen.conformance.endpoint_comparison import EndpointComparer, EndpointPair
-from archgen.conformance.model_remedy import ModelRemedy, rename_node, set_parameter
+from archgen.conformance.endpoint_comparison import (
+    EndpointComparer,
+    EndpointPair,
+    ModelRemedy,
+    rename_node,
+    set_parameter,
+)
 from archgen.conformance.observed_robot import ObservedNode, ObservedRobot
 from archgen.conformance.recording_comparison import RecordingComparer
 from archgen.conformance.seen_record import EndState, name_end

@@ -33,10 +33,9 @@ from archgen.model.component import Component, Group, Input, Output
 from archgen.model.coordinate_frames import Frame
 from archgen.model.derived_names import derive_node_ids
 from archgen.model.message_types import ConceptualType
-from archgen.model.node import Endpoint, FlowKind, Node, PortUse, Qos, Topic, UseKind
+from archgen.model.node import Endpoint, FlowKind, Node, PortUse, Qos, ReadyConditions, StartUp, Topic, UseKind
 from archgen.model.port_media import MEMORY, nature_of, uses_ros
 from archgen.model.runtime_facts import TRANSFORM_MESSAGE
-from archgen.model.start_up import ReadyConditions, StartUp
 
 _Port = TypeVar("_Port", Input, Output)
 

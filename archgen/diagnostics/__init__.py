@@ -24,9 +24,15 @@ from archgen.diagnostics.diagnostic import (
     sort_gravest_first,
 )
 from archgen.diagnostics.natural_order import order_naturally
-from archgen.diagnostics.safe_text import defuse_command, format_json, make_visible, measure_width, replace_surrogates
 from archgen.diagnostics.source_span import NO_SPAN, SourceTexts, Span, first_written_span
 from archgen.diagnostics.suggestions import NAMES_HELP, count_slips, did_you_mean, did_you_shorten, find_closest
+from archgen.diagnostics.text_columns import (
+    defuse_command,
+    format_json,
+    make_visible,
+    measure_width,
+    replace_surrogates,
+)
 
 __all__ = ["NAMES_HELP", "NO_SPAN", "AskedName", "Diagnostic", "Label", "Rule", "Severity", "SourceTexts", "Span"]
 __all__ += ["count_by_severity", "count_slips", "defuse_command", "diagnose_repetition", "did_you_mean"]

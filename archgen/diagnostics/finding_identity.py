@@ -14,7 +14,7 @@ import re
 from collections import Counter, defaultdict, deque
 from typing import TYPE_CHECKING, Protocol
 
-from archgen.diagnostics.safe_text import replace_surrogates
+from archgen.diagnostics.text_columns import replace_surrogates
 from archgen.frozen import NamedTuple
 
 if TYPE_CHECKING:

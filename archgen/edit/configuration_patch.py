@@ -6,9 +6,9 @@ from collections.abc import Iterator, Sequence
 from fractions import Fraction
 
 from archgen import pipeline
+from archgen.edit.adopted_remedies import ValueChange, edit_file
 from archgen.edit.edit_proof import first_file_of, list_new_errors
 from archgen.edit.element_edit import EditRefusedError, FileEdit
-from archgen.edit.value_change import ValueChange, edit_file
 from archgen.model.node import Node
 from archgen.pipeline import CheckedProject
 from archgen.project.project_loading import load_from_files

@@ -11,7 +11,7 @@ from collections.abc import Iterator, Mapping
 
 from archgen import pipeline
 from archgen.compare.architecture_version import ArchitectureVersion
-from archgen.compare.element_listing import list_elements
+from archgen.compare.change_listing import list_elements
 from archgen.compare.matched_ids import MatchedIds
 from archgen.compare.version_pair import MAPPED_KEY, ComparedElement
 from archgen.diagnostics import Diagnostic, Severity

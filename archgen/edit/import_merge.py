@@ -17,8 +17,8 @@ from archgen.edit.earlier_import import (
     update_slice_text,
 )
 from archgen.frozen import NamedTuple, dataclass, field
+from archgen.merge.change_transfer import to_texts
 from archgen.merge.slice_merge import SliceVersions, merge_slices
-from archgen.merge.slice_reading import to_texts
 from archgen.merge.tree_merge import (
     FIELD_ORDER,
     FIELD_PATHS,

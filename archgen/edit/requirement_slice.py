@@ -14,7 +14,7 @@ from archgen.edit import earlier_import
 from archgen.edit.edit_proof import list_new_errors, load_with_text
 from archgen.frozen import dataclass, field
 from archgen.link import mapping_values
-from archgen.merge.slice_reading import to_texts
+from archgen.merge.change_transfer import to_texts
 from archgen.pipeline import CheckedProject
 from archgen.project.slice_parsing import parse_slice
 from archgen.syntax.project_files import read_text_file

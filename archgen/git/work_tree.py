@@ -10,7 +10,7 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from archgen.git.git_call import GitError, GitResult, run_git
-from archgen.git.merged_trees import MergeFolder, PathConflict
+from archgen.git.object_reader import MergeFolder, PathConflict
 from archgen.git.repository_lookup import GitRepository, resolve_revision
 
 _UNDER_WAY = {

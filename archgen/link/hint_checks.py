@@ -15,8 +15,7 @@ from archgen.diagnostics import Diagnostic, Label, Span, did_you_mean, join_word
 from archgen.frozen import NamedTuple, dataclass, replace
 from archgen.installed_backends import InstalledBackend, list_installed_backends
 from archgen.link import mapping_values
-from archgen.model.annotated_elements import list_annotated_elements
-from archgen.model.architecture import Architecture
+from archgen.model.architecture import Architecture, list_annotated_elements
 from archgen.model.component import Component, ComponentType
 from archgen.model.element_annotations import shorten_value
 from archgen.syntax.project_files import ProjectFiles, read_text_file

@@ -15,11 +15,12 @@ from archgen.diagnostics import Span, make_visible
 from archgen.diagnostics.suggested_fixes import TextEdit
 from archgen.edit.element_edit import EditRefusedError, FileEdit
 from archgen.edit.formatted_slices import format_text, keeps_findings
-from archgen.live.edited_project import EditedProject
+from archgen.live.warm_project import EditedProject
 from archgen.lsp.completion import list_offers
-from archgen.lsp.document_outline import SYMBOL_KINDS, list_folds, list_symbols
+from archgen.lsp.editor_edits import find_findings, list_fixes, plan_certain_edits, plan_edits
 from archgen.lsp.element_hints import OTHER_TOKEN, TOKEN_MODIFIERS, TOKEN_TYPES, list_inlays, list_lenses, list_tokens
 from archgen.lsp.element_navigation import (
+    SYMBOL_KINDS,
     describe_element,
     describe_key,
     describe_message,
@@ -27,10 +28,10 @@ from archgen.lsp.element_navigation import (
     find_element,
     find_named_file,
     list_declarations,
+    list_folds,
     list_mentions,
+    list_symbols,
 )
-from archgen.lsp.quick_fixes import find_findings, list_fixes, plan_certain_edits
-from archgen.lsp.rename_request import plan_edits
 from archgen.model.component_nesting import find_component
 from archgen.syntax.mended_text import measure_common_lines, split_lines
 from archgen.syntax.slice_layout import UnformattableError

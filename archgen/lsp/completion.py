@@ -14,7 +14,7 @@ from archgen.findings.rule_pages import summarise_rule
 from archgen.frozen import NamedTuple
 from archgen.language.key_paths import OWN_DATA, SLICE, find_inner_part
 from archgen.language.language_tables import ENTRIES, KEYS, OFFERS, SECTION_KINDS, WORDS
-from archgen.live.edited_project import EditedProject
+from archgen.live.warm_project import EditedProject
 from archgen.pipeline import index_all_rules
 from archgen.schema.language_schema import find_part_schema, resolve_part
 from archgen.syntax.yaml_parser import parse_yaml

@@ -7,7 +7,7 @@ from collections.abc import Iterable, Iterator
 from archgen.checking.reference_index import WrittenName
 from archgen.diagnostics import Span
 from archgen.frozen import NamedTuple
-from archgen.live.edited_project import EditedProject
+from archgen.live.warm_project import EditedProject
 from archgen.model.port_media import ROS
 from archgen.views.lookup import Lookup
 from archgen.views.timing.value_format import display_duration

@@ -21,11 +21,11 @@ from pygls.workspace import PositionCodec
 
 from archgen.diagnostics import Diagnostic, Severity, Span, make_visible
 from archgen.findings.variant_findings import UNUSED_RULES, phrase_absence
-from archgen.live.edited_project import EditedProject, WholeCheck
 from archgen.live.file_watch import WatchedPlaces, watch_files
+from archgen.live.warm_project import EditedProject, WholeCheck
 from archgen.lsp.answers import ANSWERS, OPTIONS, RefusedRequestError
+from archgen.lsp.element_navigation import FindLine, to_place, to_range
 from archgen.lsp.open_projects import OpenProjects
-from archgen.lsp.text_positions import FindLine, to_place, to_range
 from archgen.pipeline import index_all_rules
 from archgen.project import ProjectNotFoundError
 from archgen.resources import HOME_URL

@@ -9,7 +9,7 @@ from pathlib import Path
 
 from pygls import uris
 
-from archgen.live.edited_project import EditedProject
+from archgen.live.warm_project import EditedProject
 from archgen.project.project_search import PROJECT_FILE, ProjectNotFoundError, name_path_from
 from archgen.syntax.file_patterns import is_yaml_name
 

@@ -10,14 +10,19 @@ from archgen import git, pipeline, project
 from archgen.diagnostics.finding_identity import FindingIdentity, identify_finding
 from archgen.frozen import NamedTuple, dataclass, replace
 from archgen.git import GitError
-from archgen.git.merged_trees import MergeFolder, PathConflict, open_merge_folder
+from archgen.git.object_reader import MergeFolder, PathConflict, open_merge_folder
 from archgen.git.repository_lookup import look_up_tree
 from archgen.merge.branch_results import BranchJudges, BranchMerge, FileConflict, FollowedVersion, JointBreaks
-from archgen.merge.double_renames import find_double_renames
+from archgen.merge.change_transfer import read_normal_tree
 from archgen.merge.file_merge import merge_contents
-from archgen.merge.renamed_keys import follow_renames
-from archgen.merge.slice_reading import read_normal_tree
-from archgen.merge.tree_merge import EMPTY_MAPPING, MergeConflictError, merge_values, read_merged_value
+from archgen.merge.tree_merge import (
+    EMPTY_MAPPING,
+    MergeConflictError,
+    find_double_renames,
+    follow_renames,
+    merge_values,
+    read_merged_value,
+)
 from archgen.pipeline import CheckedProject, VersionCache
 from archgen.project import TrackedProject
 from archgen.syntax.file_patterns import YAML_ENDINGS

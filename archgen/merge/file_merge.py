@@ -10,9 +10,9 @@ from __future__ import annotations
 from typing import Any
 
 from archgen.frozen import dataclass
-from archgen.git.merged_trees import merge_lines
+from archgen.git.object_reader import merge_lines
+from archgen.merge.change_transfer import read_tree, to_texts
 from archgen.merge.slice_merge import SliceVersions, UnmergedSlice, merge_slices
-from archgen.merge.slice_reading import read_tree, to_texts
 from archgen.merge.tree_merge import FIELD_ORDER
 from archgen.syntax.yaml_writer import write_yaml
 

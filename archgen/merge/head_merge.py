@@ -9,7 +9,7 @@ from archgen import project
 from archgen.frozen import NamedTuple
 from archgen.git import GitError
 from archgen.git.branch_base import list_common_commits
-from archgen.git.merged_trees import open_merge_folder
+from archgen.git.object_reader import open_merge_folder
 from archgen.git.work_tree import lay_merge, name_head, refuse_unready
 from archgen.merge.branch_merge import BranchMerger
 from archgen.merge.branch_results import BranchJudges, BranchMerge

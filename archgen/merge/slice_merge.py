@@ -14,14 +14,22 @@ from functools import lru_cache
 
 from archgen.frozen import dataclass
 from archgen.git import GitError
-from archgen.git.merged_trees import merge_lines
-from archgen.merge.change_transfer import rename_keys, transfer_changes
-from archgen.merge.renamed_keys import KeyRename, find_renames
-from archgen.merge.slice_reading import TreeReader, convert_lines, find_line_end, read_normal_tree, read_tree
+from archgen.git.object_reader import merge_lines
+from archgen.merge.change_transfer import (
+    TreeReader,
+    convert_lines,
+    find_line_end,
+    read_normal_tree,
+    read_tree,
+    rename_keys,
+    transfer_changes,
+)
 from archgen.merge.tree_merge import (
     ConflictingRun,
+    KeyRename,
     MergeConflictError,
     MergedRun,
+    find_renames,
     merge_sequences,
     merge_values,
     read_merged_value,

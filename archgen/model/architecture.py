@@ -1,12 +1,15 @@
-"""The architecture: components, nodes, the mapping between them, and requirements, partners, chains and views."""
+"""The architecture: components, nodes, the mapping between them, and requirements, partners, chains and views; which
+elements have annotations, and which were made by passes, from what.
+"""
 
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from typing import Literal
+from typing import Literal, Protocol
 
 from archgen.diagnostics import NO_SPAN, Span
-from archgen.frozen import dataclass, field
+from archgen.frozen import NamedTuple, dataclass, field
+from archgen.language.language_tables import ANNOTATED_KINDS, SECTION_KINDS
 from archgen.model import port_media
 from archgen.model.agreed_terms import Agreement
 from archgen.model.component import Component, ComponentType, Connection, DiagramLayout, Group, Input, Output
@@ -14,7 +17,6 @@ from archgen.model.coordinate_frames import Frame
 from archgen.model.deployment import Container, Host, Link, Resource
 from archgen.model.element_annotations import NO_ANNOTATIONS, ElementAnnotations, PropertyDeclaration
 from archgen.model.known_interfaces import Interfaces
-from archgen.model.made_elements import ElementPlace, MadeElement
 from archgen.model.message_types import ConceptualType
 from archgen.model.node import Endpoint, Node, Topic
 from archgen.model.parameter import ParameterValue
@@ -24,6 +26,35 @@ from archgen.model.requirement import Requirement
 from archgen.model.source_repository import SourceRepository
 from archgen.model.use_case_steps import Actor, Step
 from archgen.model.variant import Variant
+
+ElementPlace = tuple[str, int, int]
+"""File, line and column of an element; column 0 for whatever begins on that line."""
+
+
+class MadeElement(NamedTuple):
+    """What an element was made from."""
+
+    passes: tuple[str, ...]
+    """The passes that made or changed it, in the order in which they ran; none where it is only known from where it is."""
+    place: str
+    """File, line and column of what it was made from."""
+
+    @property
+    def sentence(self) -> str:
+        """Return what is said of it, without its place."""
+        names = " and ".join(f"`{name}`" for name in self.passes)
+        return f"made by the pass{'es' * (len(self.passes) > 1)} {names} from" if names else "from"
+
+    def __str__(self) -> str:
+        return f"{self.sentence} {self.place}"
+
+
+def find_made_element(made_elements: Mapping[ElementPlace, MadeElement], place: Span) -> MadeElement | None:
+    """Return what an element that is written at a place was made from, None where no pass had a hand in it."""
+    if not made_elements:
+        return None
+    exact = made_elements.get((place.file, place.line, place.column))
+    return exact or made_elements.get((place.file, place.line, 0))
 
 
 # Spans (`at`, `show_at`, ...) are left out of equality throughout the model: an element that only moved within the
@@ -394,3 +425,59 @@ class Architecture:
     def nodes_implementing(self, component_id: str) -> Iterator[Node]:
         """Yield the nodes that implement the component with this complete id, planned ones included."""
         return (node for node in self.nodes.values() if component_id in node.implements)
+
+
+_LISTED_APART = frozenset({"component_types", "nodes", "types"})
+"""Sections of which some elements were not written here."""
+
+
+class Annotated(Protocol):
+    """An element of any kind."""
+
+    @property
+    def annotations(self) -> ElementAnnotations:
+        """Its properties and hints."""
+
+    @property
+    def at(self) -> Span:
+        """Where it is written."""
+
+
+class AnnotatedElement(NamedTuple):
+    """An element with its kind, its complete id, and the id of the element that findings about it name."""
+
+    kind: str
+    id: str
+    element: Annotated
+    is_expected: bool = True
+    """Whether it has what is required of its kind: what holds others, and what nobody wrote, need not."""
+
+    @property
+    def owner_id(self) -> str:
+        """The component of a port; of anything else its own id."""
+        return self.id.rpartition(".")[0] if self.kind in {"input", "output"} else self.id
+
+    def lacks(self, declared: PropertyDeclaration) -> bool:
+        """Whether it does not have a declared property, and is of a kind that this names."""
+        return self.is_expected and self.kind in declared.of and declared.id not in self.element.annotations.properties
+
+
+def list_annotated_elements(architecture: Architecture) -> Iterator[AnnotatedElement]:
+    """Yield every element that was written; components and ports of instances included, types of libraries not."""
+    for section, kind in SECTION_KINDS.items():
+        if kind in ANNOTATED_KINDS and section not in _LISTED_APART:
+            elements: Mapping[str, Annotated] = getattr(architecture, section)
+            yield from (AnnotatedElement(kind, id_, element) for id_, element in elements.items())
+    for each in architecture.component_types.values():
+        if each.library is None:
+            yield AnnotatedElement("component_type", each.id, each, is_expected=not each.is_abstract)
+    for component in architecture.list_described_components():
+        yield AnnotatedElement("component", component.id, component, is_expected=not component.children)
+        yield from (AnnotatedElement("input", port.id, port) for port in component.inputs.values())
+        yield from (AnnotatedElement("output", port.id, port) for port in component.outputs.values())
+    for type_ in architecture.types.values():
+        if type_.origin == "project" and type_.at.file and type_.library is None:
+            yield AnnotatedElement("type", type_.name, type_)
+    for node in architecture.nodes.values():
+        if node.written:
+            yield AnnotatedElement("node", node.id, node)

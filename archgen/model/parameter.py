@@ -22,6 +22,11 @@ def is_parameter_name(name: str) -> bool:
     return len(name) <= MAX_NAME_LENGTH and _NAME_PATTERN.match(name) is not None
 
 
+def describe_types(types: str | Mapping[str, str]) -> str:
+    """Return a type, or types with the names of their fields, on one line."""
+    return types if isinstance(types, str) else ", ".join(f"{name}: {type_name}" for name, type_name in types.items())
+
+
 @dataclass(frozen=True, slots=True)
 class Parameter:
     """One parameter that a component declares. `name` has the names of its sets before it: `localiser.particles`.

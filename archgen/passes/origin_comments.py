@@ -12,7 +12,7 @@ from archgen.diagnostics import Diagnostic, Label, SourceTexts, Span, make_visib
 from archgen.diagnostics.element_origins import Origin, TreePath
 from archgen.frozen import replace
 from archgen.language.language_tables import SECTION_KINDS
-from archgen.model.made_elements import ElementPlace, MadeElement
+from archgen.model.architecture import ElementPlace, MadeElement
 from archgen.passes.project_tree import list_paths, walk_tree
 from archgen.syntax.yaml_tree import (
     MappingEntry,

@@ -8,14 +8,20 @@ from archgen.diagnostics import Diagnostic, did_you_mean
 from archgen.diagnostics.element_origins import Origin, TreePath
 from archgen.frozen import dataclass
 from archgen.model.known_interfaces import Interfaces
-from archgen.passes.connection_passes import CONNECT_COMPONENTS, CONNECT_PORTS, CONNECT_TYPES
+from archgen.passes.connection_passes import (
+    COMPLETE_NAMES,
+    CONNECT_COMPONENTS,
+    CONNECT_PORTS,
+    CONNECT_TYPES,
+    NORMALISE_CONNECTIONS,
+    RESOLVE_INSTANCES,
+)
 from archgen.passes.enveloping import ENVELOPE
 from archgen.passes.flattening import FLATTEN
 from archgen.passes.generic_removal import REMOVE_GENERICS
 from archgen.passes.monitoring import MONITOR
 from archgen.passes.pass_shape import Pass, PassWork
 from archgen.passes.project_tree import ProjectTree
-from archgen.passes.writing_out import COMPLETE_NAMES, NORMALISE_CONNECTIONS, RESOLVE_INSTANCES
 from archgen.project import LoadedProject
 from archgen.syntax.yaml_tree import MappingNode
 

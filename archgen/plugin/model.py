@@ -8,7 +8,7 @@ from archgen.model.element_annotations import ElementAnnotations
 from archgen.model.generic_names import read_generic_name
 from archgen.model.graph_search import find_rings
 from archgen.model.message_types import PART_KEYS, ConceptualType, DataField, flow_of
-from archgen.model.node import Endpoint, FlowKind, Node, Qos, Topic, UseKind, qos_profile
+from archgen.model.node import PHASES, Endpoint, FlowKind, Node, Qos, Topic, UseKind, qos_profile
 from archgen.model.parameter import MAX_NAME_LENGTH, Operation, Parameter, is_parameter_name
 from archgen.model.parameter_values import canonical_name, find_declarations
 from archgen.model.port_media import DIGITAL, MEDIUM_NAMES, flow_of_port, is_physical, uses_ros, word_of_medium
@@ -16,7 +16,6 @@ from archgen.model.process_scheduling import NO_SCHEDULING, ProcessScheduling, r
 from archgen.model.quantity import MAX_DIGITS, Quantity, parse_quantity
 from archgen.model.requirement import Requirement
 from archgen.model.selector_evaluation import Selection, evaluate_selector
-from archgen.model.start_up import PHASES
 
 __all__ = ["DIGITAL", "MAX_DIGITS", "MAX_NAME_LENGTH", "MEDIUM_NAMES", "NO_SCHEDULING", "PART_KEYS", "PHASES"]
 __all__ += ["Architecture", "Chain", "Component", "ComponentType", "ConceptualType", "Connection", "Container"]

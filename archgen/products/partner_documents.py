@@ -17,7 +17,7 @@ from archgen.timing.chains.element_index import unknown_name_text
 from archgen.views.agreement.exchange_tables import gather_exchanges
 from archgen.views.elements import element_names
 from archgen.views.lookup import Lookup
-from archgen.views.reliance import impact_outline, partner_impact, partner_tasks, task_outline
+from archgen.views.reliance import impact_outline, partner_impact, partner_tasks
 from archgen.views.shapes import Outline
 
 DocumentFormat = Literal["text", "markdown", "json"]
@@ -74,7 +74,7 @@ def write_tasks(
     tasks = partner_tasks.find_tasks(lookup, exchanges, impact, comparison)
     if form == "json":
         return format_json(tasks_to_json(tasks))
-    return _render_outline(task_outline.make_task_outline(lookup, tasks), form, width)
+    return _render_outline(partner_tasks.make_task_outline(lookup, tasks), form, width)
 
 
 def _find_components(lookup: Lookup, words: Sequence[str]) -> list[str]:

@@ -20,7 +20,7 @@ from archgen.conformance.seen_record import (
 )
 from archgen.diagnostics import Diagnostic, join_words, settle_diagnostics
 from archgen.edit.adopted_remedies import Adoption, FindingNames, plan_adoption
-from archgen.edit.import_source import list_stale_slices
+from archgen.edit.earlier_import import list_stale_slices
 from archgen.findings import ignore_comments
 from archgen.frozen import dataclass, replace
 from archgen.git.commit_log import has_tag

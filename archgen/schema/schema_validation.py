@@ -16,8 +16,8 @@ import jsonschema_rs
 
 from archgen.diagnostics import NO_SPAN, Diagnostic, Label
 from archgen.language.language_tables import SECTION_KINDS
+from archgen.schema.component_sugar import DECLARATION_KEYS
 from archgen.schema.language_schema import load_schema
-from archgen.schema.parameter_forms import DECLARATION_KEYS
 from archgen.syntax.yaml_tree import MappingEntry, MappingNode, ScalarNode, SequenceNode, find_value, list_entries
 
 if TYPE_CHECKING:

@@ -15,7 +15,7 @@ from archgen.language.key_paths import SLICE
 from archgen.language.language_tables import DATA_PARTS, ENTRIES, KEYS, LISTED_PARTS, SHORT_KEYS
 from archgen.model.generic_names import write_generic_name
 from archgen.schema import component_sugar
-from archgen.schema.parameter_forms import expand_parameters
+from archgen.schema.component_sugar import expand_parameters
 from archgen.syntax.yaml_tree import MappingEntry, MappingNode, ScalarNode, SequenceNode, find_value, list_entries
 
 if TYPE_CHECKING:

@@ -235,6 +235,11 @@ def format_qos_cell(endpoint: Endpoint) -> Inlines:
     return (Text(format_qos(endpoint.qos), muted=not endpoint.qos.written),) if has_qos else ()
 
 
+def join_runs(runs: Inlines) -> str:
+    """Return the text of runs on one line, with a semicolon where another line begins."""
+    return "".join(f"; {run.text}" if run.line_break else run.text for run in runs)
+
+
 def cut_text(text: str, characters: int) -> str:
     """Return a text of at most so many characters; one that is cut ends in an ellipsis."""
     return text if len(text) <= characters else f"{text[: max(1, characters - 1)].rstrip()}…"

@@ -7,9 +7,8 @@ from collections.abc import Iterable, Iterator, Mapping
 from archgen.bringup.plan_shapes import DroppedWait, StartStep, Wait, WaitEnd, WaitReason
 from archgen.diagnostics import join_first, join_words
 from archgen.frozen import dataclass
-from archgen.model.node import Endpoint, Node
+from archgen.model.node import Endpoint, Node, ReadyConditions
 from archgen.model.quantity import Quantity
-from archgen.model.start_up import ReadyConditions
 from archgen.views.timing_words import name_cores
 
 KIND_WORDS = {"program": "program", "node": "node", "container": "container", "composable": "loaded node"}

@@ -6,8 +6,7 @@ from collections import defaultdict
 from collections.abc import Mapping
 from dataclasses import replace
 
-from archgen.compare.connection_maps import ConnectionMap
-from archgen.compare.version_pair import ComparedElement, ElementKey, VersionPair
+from archgen.compare.version_pair import ComparedElement, ConnectionMap, ElementKey, VersionPair
 
 
 def element(

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from archgen.compare.timing_pair import find_activity_owners
+from archgen.compare.asked_limits import find_activity_owners
 from archgen.timing.run_analysis import analyse_architecture
 from tests.compare.conftest import Checked
 

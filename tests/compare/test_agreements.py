@@ -10,10 +10,9 @@ import pytest
 from archgen import pipeline
 from archgen.compare.agreements import AgreementJudge, hash_change, names_change
 from archgen.compare.comparison import Change, PartnerBreak
-from archgen.compare.connection_maps import ConnectionMap
 from archgen.compare.matched_ids import MatchedIds
 from archgen.compare.review_facts import ReviewFacts, name_author
-from archgen.compare.version_pair import VersionPair
+from archgen.compare.version_pair import ConnectionMap, VersionPair
 from archgen.diagnostics.source_span import Span
 from archgen.model.architecture import Partner
 from archgen.model.project_settings import AcceptedChange, ReviewSettings

@@ -10,6 +10,7 @@ from typing import Any
 import pytest
 
 from archgen.compare.architecture_version import ArchitectureVersion
+from archgen.compare.asked_limits import TimingPair
 from archgen.compare.boundary_changes import _compare_interfaces as compare_interfaces
 from archgen.compare.boundary_changes import _follow_readers as follow_readers
 from archgen.compare.boundary_changes import _follow_topics as follow_topics
@@ -18,7 +19,6 @@ from archgen.compare.boundary_changes import _merge_pairs as merge_pairs
 from archgen.compare.boundary_changes import find_boundary_changes
 from archgen.compare.comparison import BoundaryChange, ComparedFigure, FigureKey, WireNames
 from archgen.compare.matched_ids import MatchedIds
-from archgen.compare.timing_pair import TimingPair
 from archgen.model.node import Qos
 from archgen.timing.figures.timing_values import TimingValue
 from archgen.timing.run_analysis import analyse_architecture

@@ -11,7 +11,7 @@ from archgen import pipeline
 from archgen.compare import Comparison
 from archgen.compare.architecture_version import ArchitectureVersion
 from archgen.compare.edits import list_edits
-from archgen.compare.kinds.component_type_kind import COMPONENT_TYPE
+from archgen.compare.kinds.functional_kinds import COMPONENT_TYPE
 from archgen.compare.kinds.key_spec import ReadContext
 from archgen.compare.matched_ids import MatchedIds
 from archgen.compare.type_edits import TypeKey, find_type_edits, trace_origins

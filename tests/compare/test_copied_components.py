@@ -6,7 +6,7 @@ import pytest
 
 from archgen.compare.element_relations import ElementRelations
 from archgen.compare.matched_ids import MatchedIds
-from archgen.compare.reshaped_components import find_copies
+from archgen.compare.reshaping import find_copies
 from tests.compare.conftest import Compared
 
 HEAD = "groups:\n  g:\n    components:\n"

@@ -7,8 +7,7 @@ from collections.abc import Iterable
 import pytest
 
 from archgen.compare.edits import list_edits
-from archgen.compare.reshaped_components import find_reshapings
-from archgen.compare.reshaping import truncate_confidence
+from archgen.compare.reshaping import find_reshapings, truncate_confidence
 from tests.compare.conftest import Compared
 
 ROBOT = """\

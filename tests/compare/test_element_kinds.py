@@ -17,7 +17,7 @@ import pytest
 
 from archgen import pipeline
 from archgen.compare.kinds import ELEMENT_KINDS, KIND_ORDER, MATCHING_ORDER, PLAIN_KINDS, Effect, find_effect, find_key
-from archgen.compare.kinds.component_type_kind import OWN_KEYS
+from archgen.compare.kinds.functional_kinds import OWN_KEYS
 from archgen.language.language_tables import ENTRIES, KEY_FACTS, KEYS, RECORD_KEYS
 from archgen.link.value_readers import list_fields
 from archgen.model.architecture import Architecture, ProjectInfo

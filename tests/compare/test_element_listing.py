@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 from archgen import pipeline
-from archgen.compare.element_listing import list_elements
+from archgen.compare.change_listing import list_elements
 from archgen.compare.match_elements import match_elements
 from archgen.compare.normal_values import ElementTitle, to_plain_data
 from archgen.compare.version_pair import ComparedElement, ElementKey

@@ -9,10 +9,10 @@ from typing import Any
 import pytest
 
 from archgen.compare.architecture_version import ArchitectureVersion
+from archgen.compare.asked_limits import TimingPair
 from archgen.compare.compare_versions import find_link_users, find_load_changes
 from archgen.compare.comparison import LoadChange
 from archgen.compare.matched_ids import MatchedIds
-from archgen.compare.timing_pair import TimingPair
 from archgen.timing.figures.timing_values import TimingValue
 from archgen.timing.run_analysis import analyse_architecture
 from tests.compare.conftest import Checked

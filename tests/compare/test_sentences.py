@@ -9,11 +9,10 @@ import pytest
 
 from archgen.compare import Change
 from archgen.compare.change_sentences import describe_change, describe_connection, describe_port_change, describe_rename
-from archgen.compare.connection_maps import RewiredInput, find_rewired_inputs
 from archgen.compare.element_sentences import describe_element_change
 from archgen.compare.key_phrases import limit_effects, shown_id, tick_names
 from archgen.compare.normal_values import ElementTitle
-from archgen.compare.version_pair import VersionPair
+from archgen.compare.version_pair import RewiredInput, VersionPair, find_rewired_inputs
 from tests.compare.conftest import Told
 from tests.compare.elements import by_key, element, pair, some, with_values
 

@@ -10,9 +10,9 @@ import pytest
 
 from archgen.compare import Change
 from archgen.compare.architecture_version import ArchitectureVersion
+from archgen.compare.asked_limits import analyse_timing_pair, can_affect_timing
 from archgen.compare.comparison import ChangeKind
 from archgen.compare.losses.timing_causes import TimingCauses
-from archgen.compare.timing_pair import analyse_timing_pair, can_affect_timing
 from archgen.model.quantity import Quantity
 from tests.compare.conftest import Checked
 from tests.compare.elements import by_key, pair, with_values

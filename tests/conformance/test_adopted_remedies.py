@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from archgen.conformance.model_remedy import ModelRemedy
+from archgen.conformance.endpoint_comparison import ModelRemedy
 from archgen.conformance.robot_comparison import ComparedPart
 from archgen.edit.adopted_remedies import Adoption, FindingNames, plan_adoption
 from archgen.importers.robot_observation import ObservationOptions, observe_robot

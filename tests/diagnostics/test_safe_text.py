@@ -6,7 +6,7 @@ import json
 
 import pytest
 
-from archgen.diagnostics.safe_text import defuse_command, format_json, make_visible, measure_width
+from archgen.diagnostics.text_columns import defuse_command, format_json, make_visible, measure_width
 
 
 @pytest.mark.parametrize(

@@ -8,8 +8,7 @@ from collections import Counter
 import pytest
 
 from archgen.diagnostics import text_columns
-from archgen.diagnostics.safe_text import measure_width
-from archgen.diagnostics.text_columns import align_rows, find_width, format_table, wrap_line
+from archgen.diagnostics.text_columns import align_rows, find_width, format_table, measure_width, wrap_line
 
 ROWS = [("id", "what"), ("perception.object_recognition", "finds objects on the table")]
 

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from archgen.edit.import_source import digest_sources, list_stale_slices, write_source_records
+from archgen.edit.earlier_import import digest_sources, list_stale_slices, write_source_records
 from archgen.pipeline import check_project
 
 PROJECT = "archgen: 1\nproject: {id: rover, title: Rover}\n"

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import pytest
 
+from archgen.edit.adopted_remedies import ValueChange, change_values
 from archgen.edit.element_edit import CannotInsertError
-from archgen.edit.value_change import ValueChange, change_values
 
 TIMING = ("nodes", "a", "timing")
 SET = ValueChange(TIMING, "priority", 7)

@@ -98,7 +98,7 @@ def _read_interfaces(parts: Sequence[bytes], folder: Path) -> None:
 
 def _read_tables(name: str) -> Callable[[Sequence[bytes], Path], None]:
     def read(parts: Sequence[bytes], folder: Path) -> None:
-        from archgen.plugins.tables.column_headings import parse_heading_map
+        from archgen.plugins.tables.table_cells import parse_heading_map
         from archgen.plugins.tables.table_import import read_tables
         from archgen.syntax.yaml_writer import write_yaml
 

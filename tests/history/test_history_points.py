@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 
-from archgen.history.history_points import count_point, point_from_data
+from archgen.history.history_counting import count_point, point_from_data
 from archgen.model.project_history import FindingCounts, HistoryPoint
 from archgen.pipeline import check_project
 

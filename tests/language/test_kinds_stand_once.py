@@ -19,7 +19,7 @@ REASONS = {
     "plugins/xmi/xmi_import.py": "the files that a model becomes",
     "link/declare/element_declaration.py": "the class of each kind",
     "link/variants/element_removal.py": "how what is gone is taken out of each section",
-    "lsp/document_outline.py": "the symbol of an editor for each kind",
+    "lsp/element_navigation.py": "the symbol of an editor for each kind",
     "lsp/element_hints.py": "the colour of an editor for each kind",
     "model/document_chapters.py": "chapters, some of which are called like sections",
     "views/changes/site_changes.py": "kinds with a page of their own",

@@ -19,11 +19,10 @@ from archgen.model.architecture import Architecture
 from archgen.model.component import PerformanceIndicator
 from archgen.model.declared_timing import Timing
 from archgen.model.element_annotations import PropertyDeclaration
-from archgen.model.node import Qos
+from archgen.model.node import Qos, ReadyConditions, StartUp
 from archgen.model.parameter import Operation, Parameter
 from archgen.model.project_settings import ConformSettings, ReviewSettings
 from archgen.model.report_settings import ReportSettings
-from archgen.model.start_up import ReadyConditions, StartUp
 from archgen.model.use_case_steps import Actor
 from tests.compare.test_element_kinds import MODEL_CLASSES, ROBOT, SECTIONS
 

@@ -10,8 +10,7 @@ import pytest
 from archgen import pipeline
 from archgen.diagnostics.diagnostic import Diagnostic
 from archgen.model.architecture import Architecture
-from archgen.model.node import Node
-from archgen.model.start_up import StartUp
+from archgen.model.node import Node, StartUp
 
 Linked = Callable[[str], tuple[Architecture, tuple[Diagnostic, ...]]]
 

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from archgen.live.edited_project import EditedProject, WholeCheck
+from archgen.live.warm_project import EditedProject, WholeCheck
 
 ROBOT = """\
 archgen: 1

@@ -5,8 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 from archgen.diagnostics.diagnostic import Diagnostic
-from archgen.live.edited_project import join_quick_findings, keep_waiting_findings
-from archgen.live.warm_project import WarmProject
+from archgen.live.warm_project import WarmProject, join_quick_findings, keep_waiting_findings
 
 ROBOT = """\
 archgen: 1

@@ -213,7 +213,7 @@ def test_a_key_takes_less_than_a_check(tmp_path: Path) -> None:
     """In processor time: ratios in one run, since nothing else holds on a busy machine."""
     folder = tmp_path.resolve() / "p"
     shutil.copytree(RAMCIP, folder, ignore=shutil.ignore_patterns("archgen-out"))
-    from archgen.live.edited_project import EditedProject
+    from archgen.live.warm_project import EditedProject
 
     project = EditedProject(folder)
     file = "groups/robot_state.yaml"

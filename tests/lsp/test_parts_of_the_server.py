@@ -12,7 +12,7 @@ from archgen.diagnostics.diagnostic import Diagnostic, Label, Severity
 from archgen.diagnostics.source_span import Span
 from archgen.diagnostics.suggested_fixes import apply_edits
 from archgen.edit.element_edit import EditRefusedError
-from archgen.live.edited_project import EditedProject
+from archgen.live.warm_project import EditedProject
 from archgen.lsp.answers import (
     ANSWERS,
     OPTIONS,
@@ -22,14 +22,22 @@ from archgen.lsp.answers import (
     list_flows,
 )
 from archgen.lsp.completion import list_offers
-from archgen.lsp.document_outline import list_folds, list_symbols
+from archgen.lsp.editor_edits import find_findings, list_fixes, plan_certain_edits, plan_edits
 from archgen.lsp.element_hints import list_inlays, list_lenses, list_tokens
-from archgen.lsp.element_navigation import describe_element, describe_key, find_declared, find_element, list_mentions
+from archgen.lsp.element_navigation import (
+    describe_element,
+    describe_key,
+    find_declared,
+    find_element,
+    has_place,
+    list_folds,
+    list_mentions,
+    list_symbols,
+    to_place,
+    to_range,
+)
 from archgen.lsp.language_server import create_server, to_message
 from archgen.lsp.open_projects import OpenProjects, name_file
-from archgen.lsp.quick_fixes import find_findings, list_fixes, plan_certain_edits
-from archgen.lsp.rename_request import plan_edits
-from archgen.lsp.text_positions import has_place, to_place, to_range
 
 ROBOT = """\
 archgen: 1

@@ -7,8 +7,7 @@ from collections.abc import Callable
 import pytest
 
 from archgen.merge.file_merge import merge_contents
-from archgen.merge.renamed_keys import find_renames
-from archgen.merge.tree_merge import MappingValue
+from archgen.merge.tree_merge import MappingValue, find_renames
 
 DVL = "{functionality: Measures speed., outputs: {velocity: {type: Speed, rate: 5 Hz}}}"
 BASE = f"""\

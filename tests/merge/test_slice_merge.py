@@ -9,7 +9,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from archgen.git.merged_trees import merge_lines
+from archgen.git.object_reader import merge_lines
 from archgen.merge.slice_merge import SliceVersions, UnmergedSlice, merge_slices
 from archgen.merge.tree_merge import MergeConflictError, MergedValue, merge_values, read_merged_value
 from archgen.syntax import yaml_parser

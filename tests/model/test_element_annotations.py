@@ -9,8 +9,7 @@ import pytest
 
 from archgen.diagnostics.source_span import NO_SPAN
 from archgen.language.language_tables import ANNOTATED_KINDS
-from archgen.model.annotated_elements import list_annotated_elements
-from archgen.model.architecture import Architecture, ProjectInfo
+from archgen.model.architecture import Architecture, ProjectInfo, list_annotated_elements
 from archgen.model.element_annotations import (
     PropertyDeclaration,
     describe_range,

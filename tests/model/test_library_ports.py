@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 from archgen import pipeline
-from archgen.model.library_ports import is_offered_by_library, waits_for_calls
+from archgen.analyses.connectivity import is_offered_by_library, waits_for_calls
 
 TEXT = """\
 libraries:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 from archgen.diagnostics.source_span import Span
-from archgen.model.made_elements import MadeElement, find_made_element
+from archgen.model.architecture import MadeElement, find_made_element
 from archgen.passes.origin_comments import write_comment
 from archgen.passes.patterns.pattern_registry import find_known_passes
 from archgen.pipeline import check_project, transform_project

@@ -7,7 +7,7 @@ from pathlib import Path
 from archgen.checking.code_ownership import make_codeowners
 from archgen.pipeline import check_project
 from archgen.products.editor_schema_marks import digest_texts, list_project_names
-from archgen.views.elements.component_type_blocks import make_component_type_table
+from archgen.views.elements.functional_level import make_component_type_table
 from archgen.views.lookup import make_lookup
 from tests.repositories import repository
 

@@ -6,7 +6,7 @@ import pytest
 
 from archgen.model.parameter import MAX_NAME_LENGTH
 from archgen.schema import normalise_document, validate_document
-from archgen.schema.parameter_forms import expand_parameters
+from archgen.schema.component_sugar import expand_parameters
 from archgen.syntax.yaml_parser import parse_yaml
 from archgen.syntax.yaml_tree import MappingNode, node_to_data
 

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from archgen.start.merge_driver_setup import add_attribute
+from archgen.start.project_plan import add_attribute
 
 BOTH = "*.yaml merge=archgen\n*.yml merge=archgen\n"
 

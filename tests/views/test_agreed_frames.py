@@ -6,9 +6,8 @@ from pathlib import Path
 
 import pytest
 
-from archgen.model.partner_interfaces import find_all_interfaces
-from archgen.model.setting_sharing import find_shared_frames
-from archgen.views.agreement.interface_versions import hash_interface
+from archgen.model.partner_interfaces import find_all_interfaces, find_shared_frames
+from archgen.views.agreement.output_promises import hash_interface
 from archgen.views.agreement.partner_agreement import PartnerAgreement, make_agreement
 from archgen.views.shapes import Table
 from tests.agreeing import DUO, checked, lines, section, view

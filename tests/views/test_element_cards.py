@@ -8,14 +8,15 @@ import pytest
 
 from archgen.pipeline import check_project
 from archgen.views.elements.annotation_facts import ElementCard, drop_empty_lists, format_fact, known_facts
-from archgen.views.elements.level_cards import (
+from archgen.views.elements.element_card import (
     make_component_card,
+    make_generic_card,
     make_group_card,
     make_node_card,
     make_port_card,
     make_topic_card,
+    make_use_case_card,
 )
-from archgen.views.elements.plain_cards import make_generic_card, make_use_case_card
 from archgen.views.lookup import Lookup, make_lookup
 
 ROBOT = """\

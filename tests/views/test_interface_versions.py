@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 from archgen.model.partner_interfaces import find_interfaces_between
-from archgen.views.agreement.interface_versions import hash_interface
+from archgen.views.agreement.output_promises import hash_interface
 from tests.agreeing import checked, view
 
 ROBOT = """\

@@ -10,7 +10,7 @@ from archgen.model.port_media import key_of_carrier, label_of_carrier
 from archgen.pipeline import check_project
 from archgen.views.elements.element_card import make_card
 from archgen.views.elements.element_names import find_elements
-from archgen.views.explorer.map_flows import make_flow_tables
+from archgen.views.explorer.map_shapes import make_flow_tables
 from archgen.views.graphs.implementation_graph import draw_implementation, draw_ros_graph
 from archgen.views.lookup import Lookup, make_lookup
 from archgen.views.pages.context_pages import make_topic_pages, make_topic_tables

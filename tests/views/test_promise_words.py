@@ -7,17 +7,15 @@ from pathlib import Path
 import pytest
 
 from archgen.pipeline import check_project
-from archgen.views.elements.component_type_blocks import make_type_blocks
 from archgen.views.elements.element_card import make_card
-from archgen.views.elements.functional_level import make_composed_blocks
-from archgen.views.elements.port_tables import make_port_blocks
-from archgen.views.elements.promise_words import describe_promise
+from archgen.views.elements.functional_level import make_composed_blocks, make_type_blocks
+from archgen.views.elements.port_tables import describe_promise, make_port_blocks
 from archgen.views.lookup import Lookup, make_lookup
 from archgen.views.pages.context_pages import make_context_pages, make_topic_pages
 from archgen.views.search import make_search_entries
 from archgen.views.shapes import Facts, Table
 from archgen.views.tables.element_rows import list_element_rows
-from archgen.views.tables.type_tables import make_type_table
+from archgen.views.tables.functional_tables import make_type_table
 from tests.agreeing import text
 
 ROBOT = """\

@@ -13,7 +13,7 @@ from archgen.views.elements import element_card
 from archgen.views.lookup import Lookup
 from archgen.views.pages import context_pages
 from archgen.views.shapes import Facts, Page
-from archgen.views.tables import element_rows, type_tables
+from archgen.views.tables import element_rows, functional_tables
 
 PROJECT = """
 archgen: 1
@@ -47,7 +47,7 @@ def fact(page: Page) -> str:
 
 
 def test_tables_lists_and_cards(index: Lookup) -> None:
-    table = type_tables.make_type_table(index)
+    table = functional_tables.make_type_table(index)
     assert table is not None
     assert {row[0][0].text: "".join(text.text for text in row[2]) for row in table.rows} == SIZES
     assert {row[0]: row[2] for row in element_rows.list_element_rows(index, "types")[1]} == SIZES

@@ -5,13 +5,11 @@ elements are recognised by is a `FeatureSpec` in the module of their kind. tests
 table with the description, the model, the resolved record and the cards.
 """
 
-from archgen.compare.kinds.component_type_kind import COMPONENT_TYPE
-from archgen.compare.kinds.functional_kinds import FUNCTIONAL_KINDS
+from archgen.compare.kinds.functional_kinds import COMPONENT_TYPE, FUNCTIONAL_KINDS
 from archgen.compare.kinds.key_spec import Effect, KeySpec, Worsening
 from archgen.compare.kinds.kind_spec import KindSpec, make_section_kind, values_feature
-from archgen.compare.kinds.project_kinds import PROJECT_KINDS
 from archgen.compare.kinds.ros_kinds import ROS_KINDS
-from archgen.compare.kinds.system_kinds import SYSTEM_KINDS
+from archgen.compare.kinds.system_kinds import PROJECT_KINDS, SYSTEM_KINDS
 from archgen.language.language_tables import KEY_FACTS, KIND_EFFECTS, SECTION_KINDS
 
 _SPECIFIED_KINDS = {

@@ -28,13 +28,12 @@ from archgen.model.declared_timing import Timing, list_fair_figures
 from archgen.model.deployment import Host
 from archgen.model.generic_names import read_generic_name
 from archgen.model.message_types import ConceptualType, DataField
-from archgen.model.node import Node
-from archgen.model.parameter import format_parameter
+from archgen.model.node import Node, StartTarget, StartUp
+from archgen.model.parameter import describe_types, format_parameter
 from archgen.model.path_resolver import title_from_id
 from archgen.model.promise import Deprecation, format_range
 from archgen.model.quantity import Quantity
 from archgen.model.requirement import Requirement
-from archgen.model.start_up import StartTarget, StartUp
 from archgen.model.use_case_steps import StepEnd
 from archgen.timing.figures.figure_wording import format_rate
 
@@ -114,12 +113,8 @@ def read_operations(component: Component, _context: ReadContext) -> Mapping[str,
             "visibility": operation.visibility,
             "description": normalize_text(operation.description),
         }
-        values |= {f"{name}:{key}": _describe_types(value) for key, value in facets.items() if value is not None}
+        values |= {f"{name}:{key}": describe_types(value) for key, value in facets.items() if value is not None}
     return values
-
-
-def _describe_types(value: str | Mapping[str, str]) -> str:
-    return value if isinstance(value, str) else ", ".join(f"{name}: {type_name}" for name, type_name in value.items())
 
 
 def is_mapped(component: Component, context: ReadContext) -> bool | None:

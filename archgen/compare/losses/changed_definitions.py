@@ -7,7 +7,7 @@ from collections.abc import Iterator, Mapping, Sequence
 
 from archgen.compare.comparison import Change
 from archgen.compare.losses.change_context import ChangeContext, PartnerLoss, tick_name, tick_sorted_names
-from archgen.compare.losses.weakened_words import compare_lives
+from archgen.compare.losses.weakened_demands import compare_lives
 from archgen.compare.matched_ids import MatchedIds
 from archgen.model.architecture import Architecture
 from archgen.model.component import ComponentType

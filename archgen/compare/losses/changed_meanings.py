@@ -23,9 +23,9 @@ from archgen.model.graph_search import find_reachable
 from archgen.model.node import Node
 from archgen.model.parameter import Parameter
 from archgen.model.parameter_values import find_value_fault
+from archgen.model.partner_interfaces import is_set_by_instance, list_set_values
 from archgen.model.project_settings import BreakCategory
 from archgen.model.quantity import Quantity, parse_quantity
-from archgen.model.setting_sharing import is_set_by_instance, list_set_values
 
 
 def find_changed_frames(context: ChangeContext) -> Iterator[PartnerLoss]:

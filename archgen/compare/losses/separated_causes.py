@@ -6,11 +6,11 @@ from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
 from itertools import chain
 from typing import Any
 
+from archgen.compare.asked_limits import can_affect_timing
 from archgen.compare.comparison import Change
 from archgen.compare.key_phrases import name_key
 from archgen.compare.losses.change_context import ChangeContext, tick_name
 from archgen.compare.losses.timing_causes import TimingCauses
-from archgen.compare.timing_pair import can_affect_timing
 from archgen.derivation import derive_low_level
 from archgen.diagnostics import NO_SPAN, fit_lines, join_words
 from archgen.frozen import NamedTuple, dataclass, replace

@@ -7,12 +7,12 @@ from dataclasses import dataclass
 from fractions import Fraction
 from functools import cached_property
 
+from archgen.compare.asked_limits import TimingPair, can_affect_timing
 from archgen.compare.comparison import Change
 from archgen.compare.kinds import Worsening, find_key
 from archgen.compare.losses.change_context import ChangeContext
 from archgen.compare.losses.lost_connections import find_output_causes
 from archgen.compare.matched_ids import MatchedIds
-from archgen.compare.timing_pair import TimingPair, can_affect_timing
 from archgen.compare.version_pair import ComparedElement, ElementKey
 from archgen.grouping import group_pairs
 from archgen.model.architecture import Architecture

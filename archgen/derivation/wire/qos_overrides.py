@@ -10,7 +10,7 @@ from fractions import Fraction
 from itertools import chain
 from typing import Any
 
-from archgen.derivation.wire.launch_words import list_parameter_words
+from archgen.derivation.wire.wire_names import list_parameter_words
 from archgen.diagnostics import Span, join_words
 from archgen.frozen import dataclass, replace
 from archgen.model.architecture import Architecture

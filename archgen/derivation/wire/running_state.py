@@ -12,17 +12,16 @@ from itertools import groupby
 from operator import attrgetter
 
 from archgen.derivation.derived_parts import DerivedParts
-from archgen.derivation.wire.launch_words import list_parameter_words
 from archgen.derivation.wire.qos_overrides import QosOverride, list_overrides, override_qos
+from archgen.derivation.wire.wire_names import list_parameter_words
 from archgen.diagnostics import NO_SPAN, Span
 from archgen.frozen import dataclass, replace
 from archgen.model.architecture import Architecture
 from archgen.model.deployment import Container, Host
-from archgen.model.node import Clock, Endpoint, Evidence, Node, RunState, UseKind
+from archgen.model.node import NO_START, Clock, Endpoint, Evidence, LifecycleState, Node, RunState, UseKind
 from archgen.model.parameter import format_parameter
 from archgen.model.parameter_values import EffectiveParameter, find_effective_parameters
 from archgen.model.ros_distro import can_name_peers, is_ros_1, knows_super_clients
-from archgen.model.start_up import NO_START, LifecycleState
 
 DOMAIN_VARIABLE = "ROS_DOMAIN_ID"
 SUPER_CLIENT_VARIABLE = "ROS_SUPER_CLIENT"

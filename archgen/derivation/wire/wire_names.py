@@ -1,22 +1,104 @@
-"""Names on the wire: those that a program writes, made absolute, and rules that give it others (`remaps`, `-r x:=y`, `__ns:=/a`).
+"""Names on the wire: those that a program writes, made absolute, and rules that give it others (`remaps`, `-r x:=y`,
+`__ns:=/a`).
 
-Both as ROS 2 (rcl) and ROS 1 (rospy, roscpp) do it. Both sides of a rule are made absolute with the final namespace and name
-of the node; then whole names are compared, once: no chains. The first rule that fits counts in ROS 2, the last one in ROS 1.
-ROS 1 has one exception: of two spellings of one name rospy and roscpp take different ones, so that the name is not known.
+Both as ROS 2 (rcl) and ROS 1 (rospy, roscpp) do it. Both sides of a rule are made absolute with the final namespace and
+name of the node; then whole names are compared, once: no chains. The first rule that fits counts in ROS 2, the last one in
+ROS 1. ROS 1 has one exception: of two spellings of one name rospy and roscpp take different ones, so that the name is not
+known.
 """
 
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from types import MappingProxyType
 from typing import Literal
 
-from archgen.derivation.wire.launch_words import JOINT, list_rule_words
 from archgen.diagnostics import NO_SPAN, Span
 from archgen.frozen import NamedTuple, dataclass, replace
 from archgen.model.node import Evidence, FlowKind, Node, PortUse
+from archgen.model.parameter import ParameterValue
 from archgen.model.ros_distro import PAST_DISTROS, is_ros_1
+
+_JOINT = ":="
+_RULE_OPTIONS = frozenset({"-r", "--remap"})
+_WHOLE_NUMBER = re.compile("[-+]?[0-9]{1,20}")
+_PARAMETER_OPTIONS = frozenset({"-p", "--param"})
+_FLAGS = {**dict.fromkeys(("y", "yes", "true", "on"), True), **dict.fromkeys(("n", "no", "false", "off"), False)}
+"""What ROS takes for booleans, in lower case."""
+_OTHER_OPTIONS = frozenset(
+    {"-p", "--param", "--params-file", "--log-level", "--log-config-file", "--log-file-name", "-e", "--enclave"}
+)
+
+
+@dataclass(frozen=True, slots=True)
+class RuleWord:
+    """A word that is a rule, and where it stands. `is_optional`: where it is no rule, the program gets it for itself."""
+
+    text: str
+    at: Span
+    is_optional: bool = False
+    is_refused: bool = False
+    """Behind `--ros-args`, but not behind `-r`: ROS 2 does not start then."""
+
+
+class _PlacedWord(NamedTuple):
+    text: str
+    at: Span
+
+
+def list_rule_words(node: Node, *, ros_1: bool) -> Iterator[RuleWord]:
+    """Yield the rules among a node's arguments, in their order."""
+    places: Sequence[Span] = node.argument_places or (NO_SPAN,) * len(node.arguments)
+    words = map(_PlacedWord, node.arguments, places)
+    if ros_1:
+        # Where `--ros-args` stands before them they are rules all the same; `_rate:=5` sets a parameter.
+        yield from (
+            RuleWord(text, at)
+            for text, at in words
+            if _JOINT in text and not (text.startswith("_") and not text.startswith("__"))
+        )
+    # What a container of ROS 2 loads has no command line of its own.
+    elif node.container is None:
+        yield from _list_in_ros_2(words)
+
+
+def _list_in_ros_2(words: Iterator[_PlacedWord]) -> Iterator[RuleWord]:
+    is_for_ros = False
+    for text, at in words:
+        if text == "--ros-args":
+            is_for_ros = True
+        elif text == "--" and is_for_ros:
+            is_for_ros = False
+        elif not is_for_ros:
+            if _JOINT in text:
+                yield RuleWord(text, at, is_optional=True)
+        elif text in _RULE_OPTIONS:
+            rule = next(words, None)
+            yield RuleWord(rule.text, rule.at) if rule else RuleWord("", at)
+        elif text in _OTHER_OPTIONS:
+            next(words, None)
+        elif _JOINT in text:
+            yield RuleWord(text, at, is_refused=True)
+
+
+def list_parameter_words(node: Node) -> Iterator[ParameterValue]:
+    """Yield the parameters that the words `-p NAME:=VALUE` give a node of ROS 2, in their order: later ones win.
+
+    The name of a node may stand before them. With one that has slashes no process starts: there is no value then.
+    """
+    words, places = node.arguments, node.argument_places or (NO_SPAN,) * len(node.arguments)
+    is_for_ros = False
+    if node.container is not None:
+        return  # as above
+    for flag, (word, at) in zip(words, list(zip(words, places, strict=True))[1:], strict=False):
+        is_for_ros = flag == "--ros-args" or (is_for_ros and flag != "--")
+        parameter, joint, text = word.partition(_JOINT)
+        whose, _, name = parameter.rpartition(":")
+        if is_for_ros and joint and flag in _PARAMETER_OPTIONS and (whose in {"", node.full_name[1:]} or "/" in whose):
+            number = int(text) if _WHOLE_NUMBER.fullmatch(text) else text
+            yield ParameterValue(name, None if "/" in whose else _FLAGS.get(text.lower(), number), at, at)
+
 
 _FORBIDDEN_CHARACTER = re.compile(r"[^A-Za-z0-9_]")
 _SUBSTITUTION = re.compile(r"\{(?:node|ns|namespace)\}")
@@ -192,15 +274,15 @@ def read_arguments(node: Node, *, ros_1: bool) -> Iterator[tuple[str, Span, Rema
 def read_remaps(node: Node, *, ros_1: bool) -> Iterator[tuple[str, Span, RemapRule | None]]:
     """Yield each of a node's `remaps` as the rule that a launch file makes of it: None for what ROS refuses."""
     for own_name, name in node.remaps.items():
-        text, at = f"{own_name}{JOINT}{name}", node.remap_places.get(own_name, node.at)
+        text, at = f"{own_name}{_JOINT}{name}", node.remap_places.get(own_name, node.at)
         yield text, at, read_rule(text, at, is_argument=False, ros_1=ros_1)
 
 
 def read_rule(text: str, at: Span, *, is_argument: bool, ros_1: bool) -> RemapRule | None:
     """Read a rule, None where ROS does not start with it."""
-    own_name, joint, name = text.partition(JOINT)
+    own_name, joint, name = text.partition(_JOINT)
     if _LAUNCH_SUBSTITUTION in name:
-        known = read_rule(f"{own_name}{JOINT}x", at, is_argument=is_argument, ros_1=ros_1)
+        known = read_rule(f"{own_name}{_JOINT}x", at, is_argument=is_argument, ros_1=ros_1)
         return replace(known, text=text, name=None) if known else None
     if ros_1:
         is_rule = joint and not _find_fault_in_ros_1(own_name, name)
@@ -233,11 +315,11 @@ def _find_fault_in_ros_1(own_name: str, name: str) -> str | None:
 
 def find_rule_fault(text: str, *, ros_1: bool) -> str:
     """Return what is wrong with a rule that ROS refuses."""
-    own_name, joint, name = text.partition(JOINT)
+    own_name, joint, name = text.partition(_JOINT)
     if read_rule(text, NO_SPAN, is_argument=True, ros_1=ros_1):
         return "behind `--ros-args` a rule stands after `-r`"
     if not joint:
-        return f"a rule has the form `from{JOINT}to`"
+        return f"a rule has the form `from{_JOINT}to`"
     if ros_1:
         return _find_fault_in_ros_1(own_name, name) or "it is no rule"
     if found := _NODE_RULE_IN_ROS_2.fullmatch(text):
@@ -336,7 +418,7 @@ class NodeNames:
             reason = Evidence("written" if name else "unknown", rule.text, rule.at)
             return WireName(program_name, name, {"name": reason})
         if has_rule_of_port and target != program_name:
-            return WireName(program_name, target, {"name": Evidence("written", f"{own_name}{JOINT}{target}", own_at)})
+            return WireName(program_name, target, {"name": Evidence("written", f"{own_name}{_JOINT}{target}", own_at)})
         return WireName(program_name, program_name, _NO_EVIDENCE)
 
     def list_matched_rules(self, program_name: str, flow: FlowKind) -> Iterator[RemapRule]:

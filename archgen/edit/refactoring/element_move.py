@@ -12,9 +12,9 @@ from archgen.edit.element_place import place_for_component
 from archgen.edit.refactoring.element_rename import refuse_taken
 from archgen.edit.refactoring.judged_version import JudgedVersion
 from archgen.edit.refactoring.kept_names import KeptNames
+from archgen.edit.refactoring.model_proof import RenamedIds
 from archgen.edit.refactoring.moved_lines import EntryMove
 from archgen.edit.refactoring.refactoring import NameTexts, Refactoring, prove_refactoring, refuse_unsound
-from archgen.edit.refactoring.renamed_ids import RenamedIds
 from archgen.language.language_tables import COMMON_SECTIONS, SECTION_KINDS
 from archgen.project import PROJECT_FILE
 from archgen.syntax.yaml_tree import MappingNode, list_entries

@@ -7,8 +7,8 @@ from archgen.diagnostics import did_you_mean
 from archgen.edit.element_edit import EditRefusedError
 from archgen.edit.refactoring.judged_version import JudgedVersion
 from archgen.edit.refactoring.kept_names import KEEP_NONE, KeptNames
+from archgen.edit.refactoring.model_proof import RenamedIds, rename_last_word
 from archgen.edit.refactoring.refactoring import MAX_LISTED, NameTexts, Refactoring, prove_refactoring, refuse_unsound
-from archgen.edit.refactoring.renamed_ids import RenamedIds, rename_last_word
 from archgen.model.project_settings import is_agreement_file
 
 _ODD_LETTERS = frozenset("\"'\\{}[],#&*!|>%@`:")

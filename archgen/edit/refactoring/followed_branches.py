@@ -17,8 +17,8 @@ from archgen.edit.element_edit import EditRefusedError, FileEdit
 from archgen.edit.refactoring.element_move import plan_move
 from archgen.edit.refactoring.element_rename import plan_rename
 from archgen.edit.refactoring.judged_version import JudgedVersion, judge_edited, judge_version
+from archgen.edit.refactoring.model_proof import RenamedIds
 from archgen.edit.refactoring.moved_lines import EntryMove, MovedLines
-from archgen.edit.refactoring.renamed_ids import RenamedIds
 from archgen.frozen import NamedTuple, dataclass, field
 from archgen.merge.branch_results import FileConflict, FollowedBranches
 from archgen.merge.tree_merge import MappingValue, MergedValue, read_merged_value

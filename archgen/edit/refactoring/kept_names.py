@@ -18,8 +18,7 @@ from archgen.edit.element_edit import (
     read_editable,
 )
 from archgen.edit.refactoring.judged_version import JudgedVersion, judge_edited
-from archgen.edit.refactoring.model_proof import find_followers
-from archgen.edit.refactoring.renamed_ids import RenamedIds
+from archgen.edit.refactoring.model_proof import RenamedIds, find_followers
 from archgen.frozen import NamedTuple
 from archgen.model.architecture import Architecture
 from archgen.model.node import Endpoint

@@ -14,9 +14,8 @@ from archgen.diagnostics.suggested_fixes import TextEdit
 from archgen.edit.element_edit import EditRefusedError, FileEdit, read_editable
 from archgen.edit.refactoring.judged_version import JudgedVersion, edit_files, judge_edited
 from archgen.edit.refactoring.kept_names import KEEP_NONE, KeptNames, find_title, keep_names
-from archgen.edit.refactoring.model_proof import compare_models, find_followers, list_other_selections
+from archgen.edit.refactoring.model_proof import RenamedIds, compare_models, find_followers, list_other_selections
 from archgen.edit.refactoring.moved_lines import EntryMove, MovedLines, Place
-from archgen.edit.refactoring.renamed_ids import RenamedIds
 from archgen.frozen import dataclass, replace
 from archgen.grouping import group_pairs
 from archgen.link.reference_resolution import list_endings

@@ -17,10 +17,8 @@ from archgen.emit.docx.contents_lists import (
     write_title_page,
 )
 from archgen.emit.docx.document_text import format_document
-from archgen.emit.docx.docx_writer import save_package
-from archgen.emit.docx.embedded_font import embed_code_font
-from archgen.emit.docx.page_flow import assign_sheets, estimate_pages, fill_pages
-from archgen.emit.docx.paper_sheets import narrow_margins
+from archgen.emit.docx.docx_writer import embed_code_font, save_package
+from archgen.emit.docx.page_flow import assign_sheets, estimate_pages, fill_pages, narrow_margins
 from archgen.emit.docx.report_template import (
     clean_settings,
     create_writer,

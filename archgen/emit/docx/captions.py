@@ -5,8 +5,7 @@ from __future__ import annotations
 from typing import Literal
 
 from archgen.emit.docx.docx_writer import ContentsEntry, DocxWriter
-from archgen.emit.docx.page_flow import FlowPiece
-from archgen.emit.docx.paper_sheets import PaperSheet
+from archgen.emit.docx.page_flow import FlowPiece, PaperSheet
 from archgen.emit.docx.word_xml import format_field, format_paragraph, format_run, name_bookmark
 
 

@@ -18,8 +18,7 @@ from docx.package import Package
 
 from archgen.emit.docx.docx_writer import ContentsEntry, DocxWriter
 from archgen.emit.docx.figures import write_figure
-from archgen.emit.docx.page_flow import FlowPiece
-from archgen.emit.docx.paper_sheets import PaperSheet
+from archgen.emit.docx.page_flow import FlowPiece, PaperSheet
 from archgen.emit.docx.table_pieces import write_facts, write_table
 from archgen.emit.docx.text_pieces import ParagraphContent, join_text, write_paragraph, write_text
 from archgen.emit.docx.word_xml import (

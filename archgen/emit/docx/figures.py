@@ -16,8 +16,7 @@ from lxml import etree
 
 from archgen.emit.docx.captions import write_caption
 from archgen.emit.docx.docx_writer import DocxWriter
-from archgen.emit.docx.page_flow import FlowPiece, ScalablePicture
-from archgen.emit.docx.paper_sheets import PaperSheet
+from archgen.emit.docx.page_flow import FlowPiece, PaperSheet, ScalablePicture
 from archgen.emit.docx.word_xml import clean_line, format_paragraph, format_run
 from archgen.frozen import dataclass, replace
 from archgen.views.shapes import Figure

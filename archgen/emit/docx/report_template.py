@@ -32,7 +32,7 @@ from lxml import etree
 from archgen import resources
 from archgen.emit.docx.docx_writer import DocxWriter
 from archgen.emit.docx.list_numbering import prepare_numbering
-from archgen.emit.docx.paper_sheets import measure_paper
+from archgen.emit.docx.page_flow import measure_paper
 from archgen.emit.docx.style_table import match_styles
 from archgen.emit.picture import Picture
 from archgen.emit.template_package import TemplateError, parse_part, read_content_types, unpack_template, zip_parts

@@ -6,12 +6,11 @@ import itertools
 import math
 from collections.abc import Iterator, Sequence
 
-from archgen.emit.docx.column_widths import choose_table_sheet
 from archgen.emit.docx.docx_writer import DocxWriter
 from archgen.emit.docx.figures import choose_sheet, write_figure
 from archgen.emit.docx.markdown_chapters import write_chapter
 from archgen.emit.docx.page_flow import FlowPiece
-from archgen.emit.docx.table_pieces import drop_spacer, write_facts, write_table
+from archgen.emit.docx.table_pieces import choose_table_sheet, drop_spacer, write_facts, write_table
 from archgen.emit.docx.text_pieces import Heading, keep_with_next, write_bullets, write_heading, write_paragraph
 from archgen.frozen import dataclass
 from archgen.views.shapes import Block, Bullets, Facts, Figure, Markdown, Outline, Paragraph, Section, Table, Text

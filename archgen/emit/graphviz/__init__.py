@@ -19,8 +19,8 @@ from archgen.cache.layout_memory import NO_MEMORY, LayoutMemory
 from archgen.cache.program_stamp import stamp_writers
 from archgen.emit.graphviz import font_config
 from archgen.emit.graphviz import picture_cache as store
+from archgen.emit.graphviz.dot_text import hide_texts
 from archgen.emit.graphviz.drawing_worker import DrawingTask
-from archgen.emit.graphviz.hidden_texts import hide_texts
 from archgen.emit.graphviz.palette import dark_rules
 from archgen.emit.graphviz.worker_pool import (
     DrawingObserver,

@@ -1,4 +1,4 @@
-"""Find places for labels: on their own arrows, touching no box, title, other label or foreign arrow."""
+"""Find places for labels: on their own arrows, touching no box, title, other label or foreign arrow. Crossings are counted."""
 
 from __future__ import annotations
 
@@ -6,9 +6,10 @@ import math
 from bisect import bisect_left, bisect_right
 from collections.abc import Iterator, Mapping, Sequence
 from functools import cache, lru_cache
+from itertools import pairwise
 
 from archgen.emit.graphviz.placed_scene import Rectangle, Scene, SceneLine, ScenePart, ScenePoint
-from archgen.frozen import replace
+from archgen.frozen import NamedTuple, replace
 
 _STEP = 6.0
 """How far apart the places that are tried for a title are, in points."""
@@ -183,11 +184,11 @@ def _candidate_spots(part: ScenePart, path: Sequence[ScenePoint]) -> Iterator[Sc
 
 def sample_line(line: SceneLine, steps: int = 8) -> Sequence[ScenePoint]:
     """Return points on the Bézier curves of a line, `steps` for each curve, and its end."""
-    return sample_curve(line.curve, steps)
+    return _sample_curve(line.curve, steps)
 
 
 @lru_cache(8192)
-def sample_curve(points: tuple[ScenePoint, ...], steps: int) -> Sequence[ScenePoint]:
+def _sample_curve(points: tuple[ScenePoint, ...], steps: int) -> Sequence[ScenePoint]:
     """Return points on Bézier curves that follow each other, `steps` for each of them, and the end."""
     weights = _weigh_ends(steps)
     samples = []
@@ -203,3 +204,89 @@ def _weigh_ends(steps: int) -> Sequence[tuple[float, float, float, float]]:
     """Return the weights of the four points of a Bézier curve at each of so many steps along it."""
     shares = [step / steps for step in range(steps)]
     return [((1 - t) ** 3, 3 * t * (1 - t) ** 2, 3 * t**2 * (1 - t), t**3) for t in shares]
+
+
+_LineSegment = tuple[ScenePoint, ScenePoint]
+
+
+class _SegmentedLine(NamedTuple):
+    """A line's straight segments, each with left, bottom, right and top, and the rectangle round them all."""
+
+    segments: Sequence[tuple[_LineSegment, float, float, float, float]]
+    bounds: Rectangle
+
+
+def count_crossings(lines: Sequence[SceneLine], limit: float = math.inf) -> int:
+    """Count the crossings of all pairs of lines. A pair may cross more than once.
+
+    Who only asks whether there are fewer than a limit is told any number from there on.
+    """
+    paths = [_split_curve(line.curve) for line in lines]
+    # A sweep from left to right: no line that begins beyond a line's right side can cross it, nor can any after that.
+    paths.sort(key=lambda path: path.bounds[0])
+    lefts = [path.bounds[0] for path in paths]
+    count = 0
+    for at, path in enumerate(paths):
+        _, bottom, right, top = path.bounds
+        for other in paths[at + 1 : bisect_left(lefts, right, at + 1)]:
+            # Written out: hundreds of arrows are a hundred thousand pairs, of which few are near.
+            if bottom < other.bounds[3] and other.bounds[1] < top and path.bounds[0] < other.bounds[2]:
+                count += _count_line_crossings(path, other)
+        if count >= limit:
+            break
+    return count
+
+
+@lru_cache(8192)
+def _split_curve(curve: tuple[ScenePoint, ...]) -> _SegmentedLine:
+    segments = _split_into_segments(curve)
+    return _SegmentedLine(
+        [(((ax, ay), (bx, by)), min(ax, bx), min(ay, by), max(ax, bx), max(ay, by)) for (ax, ay), (bx, by) in segments],
+        _bounds_of([p for each in segments for p in each]),
+    )
+
+
+def _count_line_crossings(first: _SegmentedLine, second: _SegmentedLine) -> int:
+    """Count the crossings of two lines. Only segments near the other line are compared."""
+    # Rectangles first, without a call of a function, which was a third of all the time.
+    left, bottom, right, top = second.bounds
+    near_segments = [
+        each for each in first.segments if each[1] < right and left < each[3] and each[2] < top and bottom < each[4]
+    ]
+    if not near_segments:
+        return 0
+    left, bottom, right, top = first.bounds
+    facing_segments = [
+        each for each in second.segments if each[1] < right and left < each[3] and each[2] < top and bottom < each[4]
+    ]
+    return sum(
+        _segments_cross(segment, to)
+        for segment, left, bottom, right, top in near_segments
+        for to, to_left, to_bottom, to_right, to_top in facing_segments
+        if left < to_right and to_left < right and bottom < to_top and to_bottom < top
+    )
+
+
+def _bounds_of(points: Sequence[ScenePoint]) -> Rectangle:
+    xs, ys = [x for x, _ in points] or [0.0], [y for _, y in points] or [0.0]
+    return (min(xs), min(ys), max(xs), max(ys))
+
+
+def line_length(line: SceneLine) -> float:
+    """Measure the length of a line, in points."""
+    return math.fsum([math.dist(one, other) for one, other in _split_into_segments(line.curve)])
+
+
+def _split_into_segments(curve: tuple[ScenePoint, ...]) -> list[_LineSegment]:
+    # Three straight pieces for each Bézier curve are enough to count crossings; labels need more.
+    return list(pairwise(_sample_curve(curve, 3)))
+
+
+def _segments_cross(first: _LineSegment, second: _LineSegment) -> bool:
+    (a, b), (c, d) = first, second
+    # Proper crossings only: arrows that share an end, or touch, do not cross.
+    return _side_of_line(a, b, c) * _side_of_line(a, b, d) < 0 and _side_of_line(c, d, a) * _side_of_line(c, d, b) < 0
+
+
+def _side_of_line(a: ScenePoint, b: ScenePoint, c: ScenePoint) -> float:
+    return (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])

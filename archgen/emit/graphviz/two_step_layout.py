@@ -16,8 +16,7 @@ from functools import cache, partial
 from archgen.cache.layout_memory import NO_MEMORY, LayoutMemory
 from archgen.emit.graphviz import layout_engine
 from archgen.emit.graphviz.group_order import GroupRows, fold_order, order_forward, route_between_rows, wrap_ranks
-from archgen.emit.graphviz.label_places import declutter_labels
-from archgen.emit.graphviz.line_crossings import count_crossings, line_length
+from archgen.emit.graphviz.label_places import count_crossings, declutter_labels, line_length
 from archgen.emit.graphviz.placed_scene import Scene, SceneFrame, SceneLine, ScenePart, format_attributes, read_scene
 from archgen.emit.graphviz.styled_graph import (
     StyledGraph,

@@ -28,7 +28,7 @@ from archgen.views.changes.change_wording import CHANGE_SIGNS, ChangeGroup
 from archgen.views.changes.comparison_document import ComparisonDocument, FindingGroup, NamedVersion
 from archgen.views.changes.figure_lines import ChainRow, FigureLine
 from archgen.views.graphs.changes import SMALL_BUDGET
-from archgen.views.graphs.changes.picture_folding import fits_budget
+from archgen.views.graphs.changes.merged_versions import fits_budget
 from archgen.views.inline_text import count_noun
 from archgen.views.picture_shapes import Graph
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 from collections.abc import Iterable, Iterator, Sequence
 
-from archgen.emit.site import status_marks
+from archgen.emit.site import html_text
 from archgen.emit.site.html_text import replace_forbidden
 from archgen.emit.site.page_links import SiteLinks
 from archgen.grouping import group_pairs
@@ -94,7 +94,7 @@ def _part_path(number: int) -> str:
 
 def _write_calls(explorer_map: ExplorerMap, links: SiteLinks) -> Iterator[str]:
     """Yield a call for each table, several for a long one; and one with the icons of states, which pages have as well."""
-    for name, rows in {**explorer_map.tables, "icons": status_marks.list_icons()}.items():
+    for name, rows in {**explorer_map.tables, "icons": html_text.list_icons()}.items():
         texts = [_write_row(row, name, links) for row in rows]
         while texts:
             size, count = 0, 0

@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Mapping, Sequence
 
-from archgen.emit.site import status_marks
+from archgen.emit.site import html_text
 from archgen.emit.site.html_text import escape_breakable, escape_html
 from archgen.emit.site.page_links import SiteLinks
 from archgen.frozen import dataclass, field
@@ -168,8 +168,8 @@ class SiteNavigation:
 
 def _write_marks(page: Page) -> str:
     """Write the marks of an entry: how it stands, and whether it has changed."""
-    mark = status_marks.write_mark(page.mark) if page.mark else ""
-    return mark + status_marks.write_mark("changed") if page.is_changed else mark
+    mark = html_text.write_mark(page.mark) if page.mark else ""
+    return mark + html_text.write_mark("changed") if page.is_changed else mark
 
 
 def _count_by_kind(pages: Sequence[Page]) -> str:

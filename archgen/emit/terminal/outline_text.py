@@ -6,7 +6,8 @@ from collections.abc import Iterator
 
 from archgen.diagnostics import defuse_command, make_visible, measure_width
 from archgen.diagnostics.text_columns import align_rows, format_table, wrap_line
-from archgen.views.shapes import Block, Bullets, Facts, Inlines, Outline, Paragraph, Section, Table
+from archgen.views.inline_text import join_runs
+from archgen.views.shapes import Block, Bullets, Facts, Outline, Paragraph, Section, Table
 
 
 def write_outline_lines(outline: Outline, width: int | None = None) -> Iterator[str]:
@@ -18,11 +19,6 @@ def write_outline_lines(outline: Outline, width: int | None = None) -> Iterator[
         *(line for section in outline.sections for line in _write_section(section, width)),
     ]
     yield from map(defuse_command, lines)
-
-
-def join_runs(runs: Inlines) -> str:
-    """Return runs as one line."""
-    return "".join(f"; {run.text}" if run.line_break else run.text for run in runs)
 
 
 def _write_section(section: Section, width: int | None) -> Iterator[str]:

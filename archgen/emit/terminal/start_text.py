@@ -7,7 +7,7 @@ from collections.abc import Collection, Iterator
 
 from archgen.bringup.plan_shapes import StartPlan, StartStep
 from archgen.diagnostics import make_visible
-from archgen.model.start_up import PHASES
+from archgen.model.node import PHASES
 from archgen.views import start_phrases
 
 _INDENT = " " * 6

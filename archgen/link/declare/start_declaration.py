@@ -8,7 +8,7 @@ from archgen.diagnostics import Diagnostic, Span
 from archgen.link import mapping_values, sanity_checks
 from archgen.link.reference_resolution import ReferenceResolver, find_inner_component
 from archgen.link.value_readers import read_values
-from archgen.model.start_up import ReadyConditions, StartTarget, StartUp
+from archgen.model.node import ReadyConditions, StartTarget, StartUp
 from archgen.syntax.yaml_tree import MappingEntry, MappingNode, ScalarNode, SequenceNode, list_entries
 
 _NOT_INHERITED = frozenset({"ready", "once"})

@@ -8,7 +8,8 @@ from archgen.diagnostics import Span
 from archgen.diagnostics.element_origins import TreePath
 from archgen.model.generic_names import write_generic_name
 from archgen.passes.patterns.architecture_view import ArchitectureView
-from archgen.passes.patterns.pass_shapes import EditKind
+from archgen.passes.patterns.expressions import EditKind
+from archgen.passes.patterns.matching import resolve_text
 from archgen.passes.patterns.pattern_shapes import (
     TYPE_KEYS,
     Anything,
@@ -23,7 +24,6 @@ from archgen.passes.patterns.pattern_shapes import (
     Variable,
     ViewValue,
 )
-from archgen.passes.patterns.value_matching import resolve_text
 from archgen.schema.short_forms import ElementForm
 from archgen.syntax.yaml_tree import MappingEntry, MappingNode, ScalarNode, SequenceNode, YamlNode
 

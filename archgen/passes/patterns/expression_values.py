@@ -8,9 +8,8 @@ from collections.abc import Mapping, Sequence
 from archgen.compose.expanded_project import bind_type_name
 from archgen.model.message_types import PART_KEYS
 from archgen.passes.patterns.expressions import Call, Condition, ListOperand, Operand, TextOperand
-from archgen.passes.patterns.matching import COMPONENTS, PatternView
+from archgen.passes.patterns.matching import COMPONENTS, PatternView, join_words, resolve_text
 from archgen.passes.patterns.pattern_shapes import INNER_KEY, Anything, Bindings, ComponentBody, Variable, ViewValue
-from archgen.passes.patterns.value_matching import join_words, resolve_text
 
 _WORD = re.compile(r"[A-Z]+(?![a-z])|[A-Z]?[a-z]+|[A-Z]+|[0-9]+")
 _TYPE_KEYS = frozenset({"type", "is", "same_as", *PART_KEYS})

@@ -10,7 +10,7 @@ from archgen.frozen import dataclass
 from archgen.model.element_ids import is_id
 from archgen.passes.pass_running import PASSES
 from archgen.passes.pass_shape import STATES, Pass, PassWork
-from archgen.passes.patterns.pass_shapes import WRONG_PASS, PatternPass, RewriteRule, diagnose_pass
+from archgen.passes.patterns.expressions import WRONG_PASS, PatternPass, RewriteRule, diagnose_pass
 from archgen.passes.patterns.rule_reading import RuleReader, list_items
 from archgen.passes.patterns.rule_running import run_rules
 from archgen.project import LoadedProject

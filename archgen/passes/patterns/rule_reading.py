@@ -6,23 +6,21 @@ from collections.abc import Iterable, Iterator, Sequence
 
 from archgen.diagnostics import Diagnostic, Label, Span, did_you_mean
 from archgen.passes.patterns.expressions import (
-    OPERANDS,
-    ExpressionError,
-    list_operand_variables,
-    parse_let_value,
-    parse_where_condition,
-)
-from archgen.passes.patterns.matching import COMPONENTS, SectionEntry, ViewPattern
-from archgen.passes.patterns.pass_shapes import (
     EDIT_KINDS,
+    OPERANDS,
     WRONG_PASS,
+    ExpressionError,
     LetBinding,
     NegativePattern,
     RewriteRule,
     RuleEdit,
     WrittenCondition,
     diagnose_pass,
+    list_operand_variables,
+    parse_let_value,
+    parse_where_condition,
 )
+from archgen.passes.patterns.matching import COMPONENTS, SectionEntry, ViewPattern
 from archgen.passes.patterns.pattern_shapes import (
     Anything,
     Constant,

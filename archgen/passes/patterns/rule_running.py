@@ -11,13 +11,19 @@ from archgen.passes.pass_shape import PassWork
 from archgen.passes.patterns.architecture_view import ArchitectureView
 from archgen.passes.patterns.edit_values import EditError, fill_pattern
 from archgen.passes.patterns.expression_values import WrongValueError, evaluate_operand, is_condition_true
-from archgen.passes.patterns.expressions import Call, ListOperand, TextOperand
-from archgen.passes.patterns.matching import COMPONENTS, match_view
+from archgen.passes.patterns.expressions import (
+    WRONG_PASS,
+    Call,
+    LetBinding,
+    ListOperand,
+    PatternPass,
+    RewriteRule,
+    TextOperand,
+)
+from archgen.passes.patterns.matching import COMPONENTS, MAX_TEXT, BudgetExceededError, MatchBudget, match_view
 from archgen.passes.patterns.model_facts import ModelFacts
-from archgen.passes.patterns.pass_shapes import WRONG_PASS, LetBinding, PatternPass, RewriteRule
 from archgen.passes.patterns.pattern_shapes import Bindings, Constant, MappingPattern, PortReference, ViewValue
 from archgen.passes.patterns.tree_edits import TreeEditor
-from archgen.passes.patterns.value_matching import MAX_TEXT, BudgetExceededError, MatchBudget
 from archgen.passes.patterns.view_values import FACT_KEYS
 from archgen.syntax.yaml_tree import ScalarNode, SequenceNode
 

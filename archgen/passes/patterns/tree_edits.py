@@ -23,9 +23,9 @@ from archgen.passes.patterns.edit_values import (
     make_data_node,
     merge_data,
 )
+from archgen.passes.patterns.expressions import EditKind, RuleEdit
 from archgen.passes.patterns.matching import COMPONENTS
 from archgen.passes.patterns.model_facts import ModelFacts
-from archgen.passes.patterns.pass_shapes import EditKind, RuleEdit
 from archgen.passes.patterns.pattern_shapes import (
     INNER_KEY,
     Bindings,

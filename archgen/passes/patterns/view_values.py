@@ -8,7 +8,7 @@ from collections.abc import Callable, Iterator, Mapping
 from archgen.diagnostics import Diagnostic, did_you_mean
 from archgen.language.language_tables import SECTION_KINDS
 from archgen.link.mapping_values import list_scalars
-from archgen.passes.patterns.pass_shapes import diagnose_pass
+from archgen.passes.patterns.expressions import diagnose_pass
 from archgen.passes.patterns.pattern_shapes import PortReference, ScalarText, ViewValue
 from archgen.schema.language_schema import load_schema
 from archgen.syntax.yaml_tree import MappingEntry, MappingNode, ScalarNode, SequenceNode, YamlNode, list_entries

@@ -15,18 +15,22 @@ from archgen.plugin.importing import ForeignFileError, ForeignImport, Span, read
 from archgen.plugins.aadl.aadl_data_types import AadlDataTypes
 from archgen.plugins.aadl.aadl_tree import AadlConnection, AadlFlow, AadlProperty, Classifier, Modes, Subcomponent
 from archgen.plugins.aadl.archgen_words import find_own_text
-from archgen.plugins.aadl.chain_mapping import ChainMapper
 from archgen.plugins.aadl.classifier_names import ClassifierNames, KnownClassifier, fold_property_name
 from archgen.plugins.aadl.component_bodies import Body, ComponentBuilder, TooManyPartsError, map_node_ports
 from archgen.plugins.aadl.hardware_mapping import HardwareMapper
 from archgen.plugins.aadl.import_notes import NoteList
 from archgen.plugins.aadl.package_parsing import ParsedText, parse_text
-from archgen.plugins.aadl.port_mapping import PortMapper
 from archgen.plugins.aadl.property_values import PropertyScope
 from archgen.plugins.aadl.resolved_classifiers import ClassifierResolver
 from archgen.plugins.aadl.robot_groups import GroupBuilder, ModelRoots
-from archgen.plugins.aadl.structures import ClassifierStructure, StructureFinder
-from archgen.plugins.aadl.system_walk import MAX_INSTANCES, NodeWriter, TooManyInstancesError, find_instances
+from archgen.plugins.aadl.structures import ClassifierStructure, PortMapper, StructureFinder
+from archgen.plugins.aadl.system_walk import (
+    MAX_INSTANCES,
+    ChainMapper,
+    NodeWriter,
+    TooManyInstancesError,
+    find_instances,
+)
 from archgen.plugins.aadl.token_cursor import MAX_TOKENS, AadlText, TooManyTokensError
 
 _TAKEN_PROPERTIES = frozenset(

@@ -5,16 +5,15 @@ from __future__ import annotations
 from collections.abc import Callable
 
 from archgen.plugin.importing import Span
-from archgen.plugins.aadl.aadl_tree import AadlConnection, AadlFlow, Classifier, Path, Subcomponent
-from archgen.plugins.aadl.feature_parsing import (
-    ACCESSES,
-    CATEGORIES,
-    PORTS,
-    accept_one_of,
-    parse_bindings,
-    parse_dimensions,
-    parse_feature,
-    parse_prototype,
+from archgen.plugins.aadl.aadl_tree import (
+    AadlConnection,
+    AadlFeature,
+    AadlFlow,
+    Classifier,
+    Path,
+    Prototype,
+    PrototypeBinding,
+    Subcomponent,
 )
 from archgen.plugins.aadl.property_parsing import (
     parse_contained_path,
@@ -24,8 +23,141 @@ from archgen.plugins.aadl.property_parsing import (
 )
 from archgen.plugins.aadl.token_cursor import END, SECTION_WORDS, AadlSyntaxError, TokenCursor
 
+CATEGORIES = (
+    *("abstract", "bus", "data", "device", "memory", "process", "processor", "subprogram group", "subprogram"),
+    *("system", "thread group", "thread", "virtual bus", "virtual processor"),
+)
+"""Categories of components; those of two words come before those that begin as they do."""
+PORTS = ("event data port", "event port", "data port")
+_ACCESSES = ("virtual bus access", "bus access", "data access", "subprogram group access", "subprogram access")
+_PLAIN_KINDS = (*PORTS, "parameter", "feature group", "port group", "feature")
+_WORDS = {words: tuple(words.split()) for words in (*CATEGORIES, *_ACCESSES, *_PLAIN_KINDS)}
+
+
+def accept_one_of(cursor: TokenCursor, choices: tuple[str, ...]) -> str:
+    """Go behind the first of these that stands here, and return it; or return nothing."""
+    return next((words for words in choices if cursor.accept(*_WORDS.get(words) or words.split())), "")
+
+
+def _parse_direction(cursor: TokenCursor) -> str:
+    """Parse `in`, `out`, `in out`, or nothing."""
+    if cursor.accept("in"):
+        return "in out" if cursor.accept("out") else "in"
+    return "out" if cursor.accept("out") else ""
+
+
+def _parse_prototype(cursor: TokenCursor) -> Prototype:
+    """Parse a prototype up to its `;`."""
+    start = cursor.token.offset
+    name = cursor.expect_declared("a prototype")
+    cursor.accept("refined", "to")
+    category = _parse_prototype_category(cursor)
+    classifier = "" if cursor.token.kind != "name" else cursor.expect_path("a classifier")
+    if cursor.accept("["):
+        cursor.expect("]")
+    parse_property_list(cursor)
+    cursor.expect(";")
+    return Prototype(name, category, classifier, cursor.span_from(start))
+
+
+def _parse_prototype_category(cursor: TokenCursor) -> str:
+    if direction := _parse_direction(cursor):
+        port = accept_one_of(cursor, (*PORTS, "feature"))
+        return f"{direction} {port}" if port else direction
+    if cursor.accept("requires") or cursor.accept("provides"):
+        return accept_one_of(cursor, _ACCESSES)
+    category = accept_one_of(cursor, ("feature group", "feature", *CATEGORIES))
+    if not category:
+        cursor.fail("a category is missing here: data, subprogram, thread, ...")
+    return category
+
+
+def _parse_bindings(cursor: TokenCursor) -> dict[str, PrototypeBinding]:
+    """Parse `(message => data chat::Chat, ...)` if it stands here."""
+    if not cursor.accept("("):
+        return {}
+    bindings: dict[str, PrototypeBinding] = {}
+    with cursor.deeper():
+        for _ in cursor.walk_entries(")", ","):
+            name = cursor.expect_name("a prototype")
+            cursor.expect("=>")
+            bindings[name.lower()] = _parse_actual(cursor)
+    return bindings
+
+
+def _parse_actual(cursor: TokenCursor) -> PrototypeBinding:
+    if cursor.accept("("):
+        # An array of actuals: the first stands for all.
+        with cursor.deeper():
+            first, *_ = cursor.parse_separated(lambda: _parse_actual(cursor), ",")
+        cursor.expect(")")
+        return first
+    direction = _parse_direction(cursor)
+    if direction or cursor.accept("requires") or cursor.accept("provides"):
+        category = accept_one_of(cursor, (*PORTS, *_ACCESSES, "feature"))
+    else:
+        category = accept_one_of(cursor, ("feature group", "feature", *CATEGORIES))
+    classifier = "" if cursor.at(")") or cursor.at(",") else cursor.expect_path("a classifier")
+    return PrototypeBinding(category, classifier, _parse_bindings(cursor))
+
+
+def _parse_feature(cursor: TokenCursor) -> AadlFeature:
+    """Parse a feature up to its `;`."""
+    start = cursor.token.offset
+    name = cursor.expect_declared("a feature")
+    feature = AadlFeature(name, "", cursor.span_from(start))
+    feature.refined = cursor.accept("refined", "to")
+    feature.direction = _parse_direction(cursor)
+    if not feature.direction:
+        feature.direction = "requires" if cursor.accept("requires") else "provides" if cursor.accept("provides") else ""
+    kinds = _ACCESSES if feature.direction in {"requires", "provides"} else _PLAIN_KINDS
+    kind_token = cursor.token
+    feature.kind = accept_one_of(cursor, kinds) or ("feature" if cursor.at("prototype") else "")
+    if feature.kind == "port group":
+        feature.kind = "feature group"
+    if not feature.kind:
+        cursor.fail(
+            f"no feature begins so: {' or '.join(f'`{kind}`' for kind in kinds if kind != 'port group')} is missing here"
+        )
+    if feature.kind.endswith("port") and not feature.direction:
+        words = "a port has a direction: `in`, `out` or `in out`"
+        raise AadlSyntaxError(words, kind_token, "write it before the kind of the port")
+    _parse_feature_type(cursor, feature)
+    feature.dimensions = _parse_dimensions(cursor)
+    feature.properties = parse_property_list(cursor)
+    cursor.expect(";")
+    feature.span = cursor.span_from(start)
+    return feature
+
+
+def _parse_feature_type(cursor: TokenCursor, feature: AadlFeature) -> None:
+    if cursor.accept("inverse", "of"):
+        feature.inverse = True
+    if feature.kind == "feature" or feature.kind in _ACCESSES:
+        # `feature prototype p`, and `data access data p::c` of older texts.
+        accept_one_of(cursor, ("feature", *CATEGORIES))
+    cursor.accept("prototype")
+    if cursor.token.kind == "name":
+        feature.classifier = cursor.expect_path("a classifier")
+        if feature.kind == "feature group" and cursor.accept("inverse", "of"):
+            feature.inverse, feature.classifier = True, cursor.expect_path("a feature group")
+
+
+def _parse_dimensions(cursor: TokenCursor) -> tuple[str, ...]:
+    """Parse `[3][n]` if it stands here."""
+    dimensions: list[str] = []
+    while cursor.accept("["):
+        text = ""
+        while not cursor.accept("]"):
+            if cursor.token.kind not in {"name", "number"} and not cursor.at("::"):
+                cursor.fail("`]` is missing here")
+            text += cursor.advance().text
+        dimensions.append(text)
+    return tuple(dimensions)
+
+
 # Those of AADL's first version, `data port` and such, are read too.
-_CONNECTION_KINDS = (*ACCESSES, "port", *PORTS, "parameter", "feature group", "port group", "feature")
+_CONNECTION_KINDS = (*_ACCESSES, "port", *PORTS, "parameter", "feature group", "port group", "feature")
 
 
 def at_classifier(cursor: TokenCursor) -> bool:
@@ -46,9 +178,9 @@ def parse_classifier(cursor: TokenCursor) -> Classifier:
     try:
         if cursor.accept("extends"):
             classifier.extends = cursor.expect_path("a classifier")
-            classifier.bindings = parse_bindings(cursor)
+            classifier.bindings = _parse_bindings(cursor)
         elif cursor.at("("):
-            classifier.bindings = parse_bindings(cursor)
+            classifier.bindings = _parse_bindings(cursor)
     except AadlSyntaxError as error:
         cursor.tell(error)
         cursor.skip_statement()
@@ -107,8 +239,8 @@ def _parse_section(cursor: TokenCursor, classifier: Classifier) -> bool:
 def _list_section_parsers(cursor: TokenCursor, classifier: Classifier) -> dict[str, Callable[[], None]]:
     """Return what parses an entry of each section, by the words with which the section begins."""
     return {
-        "prototypes": lambda: classifier.prototypes.append(parse_prototype(cursor)),
-        "features": lambda: classifier.features.append(parse_feature(cursor)),
+        "prototypes": lambda: classifier.prototypes.append(_parse_prototype(cursor)),
+        "features": lambda: classifier.features.append(_parse_feature(cursor)),
         "subcomponents": lambda: classifier.subcomponents.append(parse_subcomponent(cursor)),
         "internal features": cursor.skip_statement,
         "processor features": cursor.skip_statement,
@@ -178,8 +310,8 @@ def parse_subcomponent(cursor: TokenCursor) -> Subcomponent:
         # A call may name a processor's subprogram, or one of a data component: `processor.s`.
         cursor.accept("processor", ".")
         subcomponent.classifier = cursor.expect_path("a classifier")
-    subcomponent.bindings = parse_bindings(cursor)
-    subcomponent.dimensions = parse_dimensions(cursor)
+    subcomponent.bindings = _parse_bindings(cursor)
+    subcomponent.dimensions = _parse_dimensions(cursor)
     if subcomponent.dimensions and cursor.at("("):
         _parse_array_elements(cursor)
     subcomponent.properties = parse_property_list(cursor)
@@ -193,7 +325,7 @@ def _parse_array_elements(cursor: TokenCursor) -> None:
     cursor.expect("(")
     for _ in cursor.walk_entries(")", ","):
         cursor.expect_path("a classifier")
-        parse_bindings(cursor)
+        _parse_bindings(cursor)
 
 
 def _parse_connection(cursor: TokenCursor) -> AadlConnection:

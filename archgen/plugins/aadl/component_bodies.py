@@ -16,7 +16,6 @@ from archgen.plugin.model import MEDIUM_NAMES, parse_quantity
 from archgen.plugins.aadl.aadl_tree import Path
 from archgen.plugins.aadl.archgen_words import find_own_text, read_component_words, read_port_words
 from archgen.plugins.aadl.element_hints import keep_sources, keep_structure, keep_thread
-from archgen.plugins.aadl.port_mapping import MappedPort, MappedPorts
 from archgen.plugins.aadl.property_values import (
     PropertyScope,
     read_count,
@@ -27,7 +26,7 @@ from archgen.plugins.aadl.property_values import (
     read_word,
 )
 from archgen.plugins.aadl.resolved_classifiers import ClassifierResolver, ResolvedClassifier, ResolvedPart
-from archgen.plugins.aadl.structures import ClassifierStructure, StructuredPart, Wire
+from archgen.plugins.aadl.structures import ClassifierStructure, MappedPort, MappedPorts, StructuredPart, Wire
 
 
 def name_bus_medium(part: ResolvedPart) -> str:

@@ -5,8 +5,13 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 
 from archgen.plugins.aadl.aadl_tree import AadlPackage, PropertySet
-from archgen.plugins.aadl.classifier_parsing import at_classifier, parse_annex, parse_classifier
-from archgen.plugins.aadl.feature_parsing import CATEGORIES, accept_one_of
+from archgen.plugins.aadl.classifier_parsing import (
+    CATEGORIES,
+    accept_one_of,
+    at_classifier,
+    parse_annex,
+    parse_classifier,
+)
 from archgen.plugins.aadl.property_parsing import parse_property, parse_property_definition
 from archgen.plugins.aadl.token_cursor import END, MAX_TOKENS, AadlSyntaxError, AadlText, SyntaxFault, TokenCursor
 

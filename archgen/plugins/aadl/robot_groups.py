@@ -13,10 +13,9 @@ from archgen.plugins.aadl.archgen_words import find_own_text, read_component_wor
 from archgen.plugins.aadl.classifier_names import KnownClassifier, find_only_implementations
 from archgen.plugins.aadl.component_bodies import Body, ComponentBuilder, join_input, reach_port, set_media
 from archgen.plugins.aadl.element_hints import keep_sources, keep_structure
-from archgen.plugins.aadl.port_mapping import MappedPort
 from archgen.plugins.aadl.property_values import PropertyScope, fold_value, read_first_text
 from archgen.plugins.aadl.resolved_classifiers import ClassifierResolver
-from archgen.plugins.aadl.structures import ClassifierStructure, StructuredPart, StructureFinder, WireEnd
+from archgen.plugins.aadl.structures import ClassifierStructure, MappedPort, StructuredPart, StructureFinder, WireEnd
 
 _TYPE_CATEGORIES = frozenset({"system", "process", "device", "abstract"})
 

@@ -8,7 +8,7 @@ PLUGIN = {
         "trace": {
             "rank": 2,
             "summary": "a trace of ros2_tracing as babeltrace2 prints it",
-            "reader": "archgen.plugins.recordings.trace_observation:observe_trace",
+            "reader": "archgen.plugins.recordings.trace_events:observe_trace",
         },
         "recording": {
             "rank": 2,

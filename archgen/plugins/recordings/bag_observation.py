@@ -30,7 +30,7 @@ from archgen.plugin.importing import (
     parse_yaml,
 )
 from archgen.plugin.ros import full_message_name, load_shipped_interfaces
-from archgen.plugins.recordings.recorded_figures import RecordedFigures
+from archgen.plugins.recordings.recorded_figures import RecordedFigures, RecordingError, RecordingSource
 from archgen.plugins.recordings.recording_import import (
     BAG_KEY,
     BAG_METADATA,
@@ -38,7 +38,6 @@ from archgen.plugins.recordings.recording_import import (
     parse_bag,
     read_bag_duration,
 )
-from archgen.plugins.recordings.recording_lines import RecordingError, RecordingSource
 
 _EXTRA = "pip install 'archgen[recordings]'"
 _ENDINGS = {b"SQLite format 3\0": ".db3", b"\x89MCAP0\r\n": ".mcap", b"#ROSBAG V2.0": ".bag"}

@@ -15,9 +15,14 @@ from fractions import Fraction
 from archgen.plugin import dataclass
 from archgen.plugin.findings import Severity
 from archgen.plugin.timing import SampleCounter
-from archgen.plugins.recordings.recorded_figures import RecordedFigures, SampleKind
+from archgen.plugins.recordings.recorded_figures import (
+    Oddities,
+    OddityText,
+    RecordedFigures,
+    RecordingSource,
+    SampleKind,
+)
 from archgen.plugins.recordings.recorded_names import RecordedNames, UnmappedError
-from archgen.plugins.recordings.recording_lines import Oddities, OddityText, RecordingSource
 
 _UNIT_NS = {"ns": 1, "us": 10**3, "ms": 10**6, "s": 10**9}
 _EVENT_COLUMN = re.compile(r"(?P<name>/.+?)/(?P<event>\w+_timestamp)(?P<place>/\d+(?:_(?:min|max))?)?\Z")

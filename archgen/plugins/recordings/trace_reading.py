@@ -16,9 +16,14 @@ from fractions import Fraction
 from archgen.plugin.findings import Diagnostic, Label, Severity
 from archgen.plugin.ros import is_common_callback
 from archgen.plugin.timing import SampleCounter, format_duration
-from archgen.plugins.recordings.recorded_figures import RecordedFigures, SampleKind
+from archgen.plugins.recordings.recorded_figures import (
+    Oddities,
+    OddityText,
+    RecordedFigures,
+    RecordingSource,
+    SampleKind,
+)
 from archgen.plugins.recordings.recorded_names import CallbackPlace, RecordedNames, UnmappedError
-from archgen.plugins.recordings.recording_lines import Oddities, OddityText, RecordingSource
 from archgen.plugins.recordings.trace_events import (
     Address,
     CallbackOwner,

@@ -5,6 +5,6 @@ PLUGIN = {
     "page": "docs/howto.md",
     "readers": {
         "tables": "archgen.plugins.tables.table_import:read_tables",
-        "headings": "archgen.plugins.tables.column_headings:parse_heading_map",
+        "headings": "archgen.plugins.tables.table_cells:parse_heading_map",
     },
 }

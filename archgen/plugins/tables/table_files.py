@@ -11,16 +11,17 @@ import re
 
 from archgen.plugin.findings import Diagnostic, Severity
 from archgen.plugin.importing import SourceTexts, Span
-from archgen.plugins.tables.column_headings import HeadingMap, read_headings
 from archgen.plugins.tables.table_cells import (
     MAX_BYTES,
     MAX_COLUMNS,
+    HeadingMap,
     TableCell,
     TableSheet,
     TableTooLargeError,
     clean_text,
     make_error,
     make_warning,
+    read_headings,
 )
 
 _ZIP_MAGIC, _COMPOUND_MAGIC = b"PK\x03\x04", b"\xd0\xcf\x11\xe0"

@@ -20,7 +20,6 @@ from archgen.plugin.findings import Diagnostic, Severity, make_visible
 from archgen.plugin.importing import ImportedTables, SourceTexts, Span, title_from_id
 from archgen.plugin.ros import full_message_name, load_interfaces
 from archgen.plugins.tables import connection_rows, declaration_rows, port_lists, table_files, table_records
-from archgen.plugins.tables.column_headings import HeadingMap, TableHeadings, write_map_option
 from archgen.plugins.tables.imported_project import (
     UNSORTED,
     ImportedComponent,
@@ -28,7 +27,14 @@ from archgen.plugins.tables.imported_project import (
     ImportedInput,
     ImportedProject,
 )
-from archgen.plugins.tables.table_cells import CellLedger, CellUse, TableCell
+from archgen.plugins.tables.table_cells import (
+    CellLedger,
+    CellUse,
+    HeadingMap,
+    TableCell,
+    TableHeadings,
+    write_map_option,
+)
 from archgen.plugins.tables.table_records import TableRecord, TableReport
 
 

@@ -9,17 +9,20 @@ from typing import Any
 
 from archgen.plugin.findings import Severity
 from archgen.plugin.importing import Span
-from archgen.plugins.tables import column_headings
-from archgen.plugins.tables.column_headings import (
+from archgen.plugins.tables import table_cells
+from archgen.plugins.tables.imported_project import ImportedComponent, ImportedProject
+from archgen.plugins.tables.table_cells import (
     KEY_BY_HEADING,
     TARGETS,
     TOTAL_WORDS,
     HeadingMap,
+    TableCell,
     TableHeadings,
+    TableRow,
+    TableSheet,
     fold_heading,
+    make_error,
 )
-from archgen.plugins.tables.imported_project import ImportedComponent, ImportedProject
-from archgen.plugins.tables.table_cells import TableCell, TableRow, TableSheet, make_error
 
 _NUMBER_PATTERN = re.compile(r"[-+]?[0-9][0-9 .,'\u2019]*(?:[%\u20ac$\u00a3]|[A-Za-z]{1,3})?\Z")
 _SHOWN_ROWS, _SHOWN_CELLS = 3, 8
@@ -76,13 +79,13 @@ def _describe_unknown(sheet: TableSheet, heading_map: HeadingMap) -> tuple[str, 
     shown = ["`" + " | ".join(cell.quotation for cell in list(row.values())[:_SHOWN_CELLS]) + "`" for row in rows]
 
     def weigh_row(row: TableRow) -> tuple[int, int]:
-        known = [column_headings.key_of_heading(cell.one_line, heading_map) for cell in row.values()]
+        known = [table_cells.key_of_heading(cell.one_line, heading_map) for cell in row.values()]
         return sum(key is not None for key in known), len(row)
 
     likely_row = max(rows, key=weigh_row)
-    unknown = [cell for cell in likely_row.values() if not column_headings.key_of_heading(cell.one_line, heading_map)]
+    unknown = [cell for cell in likely_row.values() if not table_cells.key_of_heading(cell.one_line, heading_map)]
     hints = [
-        column_headings.write_map_option(cell.one_line, column_headings.suggest_meaning(cell.one_line))
+        table_cells.write_map_option(cell.one_line, table_cells.suggest_meaning(cell.one_line))
         for cell in unknown[:_SHOWN_CELLS]
     ]
     help_line = (
@@ -129,11 +132,11 @@ def _read_headings(
 ) -> TableHeadings | None:
     """Read a row as headings; below other headings it must be complete, or stand below a blank row."""
     if headings is None:
-        return column_headings.read_headings(row, heading_map)
-    complete_headings = column_headings.read_new_headings(row, heading_map)
+        return table_cells.read_headings(row, heading_map)
+    complete_headings = table_cells.read_new_headings(row, heading_map)
     if complete_headings or not follows_gap:
         return complete_headings
-    new_headings = column_headings.read_headings(row, heading_map)
+    new_headings = table_cells.read_headings(row, heading_map)
     # Three known words: a row of data below a blank line may hold two by chance.
     return new_headings if new_headings and len(new_headings.key_by_column) > 2 else None  # noqa: PLR2004 - as above
 
@@ -231,8 +234,8 @@ def _report_unknown_columns(project: ImportedProject, report: TableReport, headi
             message = f"the column `{heading.quotation}` means {key} like `{first_heading}`: {lost_phrase} not taken"
         else:
             message = f"the column `{heading.quotation}` is not known: {lost_phrase} not taken"
-        guess = None if first_column is not None else column_headings.suggest_meaning(heading.one_line)
-        option = column_headings.write_map_option(heading.one_line, guess)
+        guess = None if first_column is not None else table_cells.suggest_meaning(heading.one_line)
+        option = table_cells.write_map_option(heading.one_line, guess)
         help_line = f"{f'did you mean {guess}? ' if guess else ''}{option} takes it"
         help_line += f"; a MEANING is one of: {', '.join(TARGETS)}"
         project.add_warning("unknown-key", message, heading.span, help_line)
@@ -247,7 +250,7 @@ def report_unused_map(
         for report in reports
         for headings in report.headings
         for cell in headings.cells.values()
-        for spelling in column_headings.list_spellings(cell.one_line)
+        for spelling in table_cells.list_spellings(cell.one_line)
     }
     for heading, key in heading_map.items():
         if heading not in present and not any(d.severity is Severity.ERROR for d in project.diagnostics):

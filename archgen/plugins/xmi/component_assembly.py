@@ -7,7 +7,7 @@ from collections.abc import Collection
 from dataclasses import dataclass, field
 
 from archgen.plugin.importing import XmlElement, make_id
-from archgen.plugins.xmi import uml_values
+from archgen.plugins.xmi import uml_data_types
 from archgen.plugins.xmi.component_facts import ClassFacts, ClassSorting
 from archgen.plugins.xmi.import_ledger import ImportLedger, choose_id, name_parameter
 from archgen.plugins.xmi.port_facts import PortFacts
@@ -234,14 +234,14 @@ class _FeatureReader:
         self._index, self._ledger, self._port_names = ledger.index, ledger, port_names
 
     def read_property(self, element: XmlElement) -> None:
-        name, type_name = get_name(element), uml_values.find_type_name(self._index, element)
+        name, type_name = get_name(element), uml_data_types.find_type_name(self._index, element)
         if name in self._port_names:
             # A port gives access to it: it is the port's data, and no parameter.
             self.features.data_types[name] = type_name
             self._ledger.take(element)
         elif not name:
             self._ledger.refuse(element, "it has no name")
-        elif name.lower() == _PERIOD_NAME and (text := uml_values.read_default(self._index, element)) is not None:
+        elif name.lower() == _PERIOD_NAME and (text := uml_data_types.read_default(self._index, element)) is not None:
             self._read_period(element, text)
         else:
             self._read_parameter(element, name, type_name)
@@ -250,8 +250,8 @@ class _FeatureReader:
         default = element.find("defaultValue")
         # archgen keeps the words of a period as the literal's name.
         words = get_name(default) if default is not None else ""
-        timing = uml_values.read_period(words) if words else None
-        timing = uml_values.read_period(text) if timing is None else timing
+        timing = uml_data_types.read_period(words) if words else None
+        timing = uml_data_types.read_period(text) if timing is None else timing
         if timing is None:
             why = f"`{text[:60]}` of `{get_name(element)}` is no period in seconds"
             self._ledger.leave(element, why, "write a number, such as `0.02`")
@@ -267,7 +267,7 @@ class _FeatureReader:
             if enumeration is not None and get_kind(enumeration) == "Enumeration"
             else []
         )
-        kind = "string" if choices else uml_values.find_parameter_type(type_name)
+        kind = "string" if choices else uml_data_types.find_parameter_type(type_name)
         key = name_parameter(name)
         if kind is None:
             why = f"its type `{type_name[:60]}` is no value" if type_name else "nothing says what type it has"
@@ -276,7 +276,7 @@ class _FeatureReader:
         if key in self.features.parameters:
             self._ledger.refuse(element, "there is another one of this name")
             return
-        is_list = uml_values.is_many(element)
+        is_list = uml_data_types.is_many(element)
         parameter: dict[str, object] = {"choices": choices} if choices else {"type": kind}
         parameter |= {"type": f"{kind}[]"} if is_list else {}
         parameter |= self._read_value(element, kind, choices, is_list=is_list)
@@ -290,7 +290,7 @@ class _FeatureReader:
 
     def _read_value(self, element: XmlElement, kind: str, choices: list[str], *, is_list: bool) -> dict[str, object]:
         """Return the `value` of a parameter; nothing where it has no default, or one that does not fit."""
-        text = uml_values.read_default(self._index, element)
+        text = uml_data_types.read_default(self._index, element)
         if text is None:
             return {}
         words = (
@@ -298,7 +298,7 @@ class _FeatureReader:
         )
         default = f"the default `{text[:60]}` of `{get_name(element)}`"
         try:
-            values = [uml_values.convert_value(each, kind) for each in words]
+            values = [uml_data_types.convert_value(each, kind) for each in words]
         except ValueError:
             self._ledger.leave(element, f"{default} is no {kind}: the parameter has no value")
             return {}
@@ -319,9 +319,9 @@ class _FeatureReader:
         answers: dict[str, object] = {}
         for parameter in list_child_elements(element, "Parameter"):
             direction = parameter.attributes.get("direction", "in")
-            type_name = uml_values.find_type_name(self._index, parameter)
-            type_name = uml_values.find_field_type(type_name) or type_name
-            type_name += uml_values.write_array(parameter) if type_name else ""
+            type_name = uml_data_types.find_type_name(self._index, parameter)
+            type_name = uml_data_types.find_field_type(type_name) or type_name
+            type_name += uml_data_types.write_array(parameter) if type_name else ""
             self._ledger.take(parameter)
             if direction == "return" and not type_name:
                 continue

@@ -7,7 +7,7 @@ from collections.abc import Iterable
 from dataclasses import dataclass, field
 
 from archgen.plugin.importing import XmlElement
-from archgen.plugins.xmi import uml_values
+from archgen.plugins.xmi import uml_data_types
 from archgen.plugins.xmi.uml_catalogue import UmlCatalogue
 from archgen.plugins.xmi.uml_index import Reference, UmlIndex, get_kind, get_name, is_true, list_child_elements
 
@@ -120,7 +120,7 @@ class InterfaceUses:
         port_type, is_conjugated = reference.element, is_true(element, "isConjugated")
         own, other = (facts.required, facts.provided) if is_conjugated else (facts.provided, facts.required)
         if port_type is None:
-            facts.type_name = uml_values.name_referenced(reference)
+            facts.type_name = uml_data_types.name_referenced(reference)
         elif port_type in self._interfaces:
             own.append(port_type)
         elif get_kind(port_type) in _DATA_KINDS:
@@ -128,7 +128,7 @@ class InterfaceUses:
             own += provided
             other += required
             if not provided and not required:
-                facts.type_name = uml_values.name_referenced(reference)
+                facts.type_name = uml_data_types.name_referenced(reference)
 
     def list_bare_ports(self, owner: XmlElement, ports: Iterable[PortFacts]) -> list[PortFacts]:
         """Return what a component provides and requires itself, where none of its ports does."""
@@ -165,7 +165,7 @@ class InterfaceUses:
         chosen = wanted[:1] or (getters if len(getters) == 1 else [])
         for parameter in list_child_elements(chosen[0], "Parameter") if chosen else ():
             if parameter.attributes.get("direction") == "return":
-                return uml_values.find_type_name(self._index, parameter)
+                return uml_data_types.find_type_name(self._index, parameter)
         return ""
 
 

@@ -22,9 +22,8 @@ from archgen.plugins.xmi.import_ledger import (
     say_title,
 )
 from archgen.plugins.xmi.port_facts import InterfaceUses
-from archgen.plugins.xmi.port_wiring import PortWiring
 from archgen.plugins.xmi.uml_catalogue import TOOL_TAGS, UmlCatalogue, make_catalogue, read_description
-from archgen.plugins.xmi.uml_component_sections import ComponentSections, assign_port_ids
+from archgen.plugins.xmi.uml_component_sections import ComponentSections, PortWiring, assign_port_ids
 from archgen.plugins.xmi.uml_data_types import UmlDataTypes
 from archgen.plugins.xmi.uml_index import (
     UmlIndex,

@@ -12,9 +12,11 @@ from archgen.views.agreement.agreement_content import AgreementContent
 from archgen.views.agreement.general_sections import (
     describe_standing,
     list_changed_frames,
+    list_changed_settings,
     list_start_steps,
     write_budget_section,
     write_frame_section,
+    write_setting_section,
     write_start_section,
     write_terms_section,
     write_use_case_section,
@@ -23,7 +25,6 @@ from archgen.views.agreement.interface_record import InterfaceRecord, write_sign
 from archgen.views.agreement.interface_sections import SectionWriter
 from archgen.views.agreement.interface_terms import InterfaceTerms
 from archgen.views.agreement.promise_rows import RATE, join_figures
-from archgen.views.agreement.setting_section import list_changed_settings, write_setting_section
 from archgen.views.agreement.term_changes import NAME_KIND, AgreementChanges, write_signed_kind
 from archgen.views.element_references import message_link
 from archgen.views.graphs.element_boxes import join_owner_titles

@@ -10,8 +10,7 @@ from archgen.model.latest_result import remember_latest
 from archgen.model.partner_interfaces import PartnerPair, components_at_ends, find_all_interfaces
 from archgen.timing.system import activity_builder
 from archgen.views import inline_text
-from archgen.views.agreement.interface_terms import InterfaceTerms, gather_terms
-from archgen.views.agreement.open_points import describe_open_term
+from archgen.views.agreement.interface_terms import InterfaceTerms, describe_open_term, gather_terms
 from archgen.views.agreement.promise_rows import QOS_OFFERED, RATE, PromiseRow, TermName, join_figures
 from archgen.views.element_references import message_link
 from archgen.views.graphs.element_boxes import join_owner_titles

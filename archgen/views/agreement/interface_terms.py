@@ -1,6 +1,7 @@
-"""The terms of an interface, as readers see them.
+"""The terms of an interface, as readers see them, and what two partners have still to settle about it.
 
-No term names a line of a file: text that moves changes nothing between the partners.
+No term names a line of a file: text that moves changes nothing between the partners. Open is only what stands between the
+two: the project's other findings are its own business.
 
 What holds where data is late or missing, as far as the model says it; nothing is added to that.
 """
@@ -9,6 +10,8 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 
+from archgen.analyses.port_types import is_expected_type
+from archgen.analyses.qos_compatibility import find_qos_conflicts
 from archgen.frozen import dataclass, replace
 from archgen.model.agreed_terms import INTERFACE_TERMS, find_agreement
 from archgen.model.component import Component
@@ -17,10 +20,9 @@ from archgen.model.partner_interfaces import PartnerInterface, components_at_end
 from archgen.model.ros_distro import is_ros_1
 from archgen.timing.analysis import ChainResult
 from archgen.timing.system import activity_builder
+from archgen.timing.system.activity_builder import ActivityNames
 from archgen.views import inline_text
-from archgen.views.agreement import interface_timing, interface_versions, message_fields, output_promises
-from archgen.views.agreement.interface_timing import find_giver_timing
-from archgen.views.agreement.open_points import describe_open_term, find_contradictions, find_late_chains
+from archgen.views.agreement import message_fields, output_promises, promise_rows
 from archgen.views.agreement.output_promises import CountedPort
 from archgen.views.agreement.promise_rows import (
     QOS_OFFERED,
@@ -28,13 +30,70 @@ from archgen.views.agreement.promise_rows import (
     PromiseRow,
     PromiseStrength,
     TermName,
+    find_giver_timing,
     identify_qos,
+    judge_sent_gaps,
     measure_qos,
 )
 from archgen.views.element_references import message_link
 from archgen.views.graphs.element_boxes import join_owner_titles, name_in_place
 from archgen.views.lookup import Lookup
 from archgen.views.shapes import Fact, Inlines, Text
+from archgen.views.timing import value_format
+
+_OPEN_SENTENCES = {
+    "type": "The type of what flows is not agreed.",
+    "message": "The message is not agreed.",
+    "fields": "The fields of the message are not stated here: its definition is not at hand.",
+    RATE.key: "No rate is promised{of_node}, and none can be expected from what is known.",
+    "size": "The size of a message is not known.",
+    "response": "Nobody promises within what time{of_node} an answer comes, and it cannot be told from what is known.",
+    QOS_OFFERED.key: "No quality of service is promised: ROS's default counts.",
+}
+"""What to say of a term that is open, by its key."""
+
+
+def describe_open_term(name: TermName) -> str:
+    """Return a sentence about a term that is not settled, such as the rate or the rate of one of several nodes."""
+    return _OPEN_SENTENCES[name.key].format(of_node=f" by `{name.node}`" if name.node else "")
+
+
+def _find_contradictions(lookup: Lookup, activity_names: ActivityNames, interface: PartnerInterface) -> Iterator[str]:
+    """Yield a sentence for all in which both sides, or a promise and what is expected, do not fit together."""
+    architecture = lookup.architecture
+    output = interface.output
+    for input_port in interface.inputs:
+        if output and output.type and input_port.type and not is_expected_type(architecture, input_port.type, output):
+            component = architecture.components[input_port.component].title
+            yield f"{component} expects `{input_port.type}` as `{input_port.name}`, and is given `{output.type}`."
+    if interface.flow == "topic" and not is_ros_1(architecture.distro):
+        yield from _find_qos_clashes(lookup, interface)
+    for endpoint in list_givers(lookup.architecture, interface):
+        judged = judge_sent_gaps(lookup, activity_names, endpoint)
+        yield from (each.sentence for each in judged if each.state == "broken")
+
+
+def _find_late_chains(lookup: Lookup, chains: Iterable[ChainResult]) -> Iterator[str]:
+    """Yield a sentence for each chain that misses its deadline, or that nothing proves to meet it."""
+    for chain in chains:
+        if chain.verdict in {"missed", "not proven"} and chain.deadline:
+            bound, deadline = value_format.display_duration(chain.bound), value_format.display_duration(chain.deadline)
+            title = lookup.architecture.chains[chain.id].title
+            yield f"{title} has to be done within {deadline}; expected at the latest: {bound}."
+
+
+def _find_qos_clashes(lookup: Lookup, interface: PartnerInterface) -> Iterator[str]:
+    for writer in _list_written(lookup, interface.giver_endpoints):
+        for reader in _list_written(lookup, interface.taker_endpoints):
+            conflicts = tuple(find_qos_conflicts(writer.qos, reader.qos)) if writer.label == reader.label else ()
+            if conflicts:
+                requests = " and ".join(conflict.requested for conflict in conflicts)
+                offers = " and ".join(conflict.offered for conflict in conflicts)
+                yield f"`{reader.node}` asks for {requests}, and `{writer.node}` offers {offers}: nothing arrives."
+
+
+def _list_written(lookup: Lookup, endpoints: Iterable[Endpoint]) -> list[Endpoint]:
+    return [endpoint for endpoint in endpoints if lookup.architecture.nodes[endpoint.node].written]
 
 
 def list_missing_data_duties(
@@ -167,11 +226,11 @@ def gather_terms(
     lookup: Lookup, activity_names: activity_builder.ActivityNames, interface: PartnerInterface
 ) -> InterfaceTerms:
     """Gather all terms of an interface."""
-    chains = tuple(interface_timing.find_chains_through(lookup, activity_names, interface))
+    chains = tuple(promise_rows.find_chains_through(lookup, activity_names, interface))
     giver, taker = (join_owner_titles(lookup, [partner]) for partner in interface.pair)
     ports = output_promises.list_counted_ports(lookup, interface)
-    version = interface_versions.hash_interface(lookup, interface)
-    is_launched = any(interface_versions.list_launch_words(interface))
+    version = output_promises.hash_interface(lookup, interface)
+    is_launched = any(output_promises.list_launch_words(interface))
     agreement = find_agreement(lookup.architecture.agreements, *interface.pair)
     return InterfaceTerms(
         interface,
@@ -187,13 +246,13 @@ def gather_terms(
         tuple(_requirement_runs(lookup, interface, chains)),
         tuple(list_missing_data_duties(lookup, interface, ports, giver, taker)),
         (
-            *find_contradictions(lookup, activity_names, interface),
+            *_find_contradictions(lookup, activity_names, interface),
             *output_promises.find_broken_words(lookup, interface, ports),
         ),
-        tuple(find_late_chains(lookup, chains)),
+        tuple(_find_late_chains(lookup, chains)),
         tuple(_shared_sentences(lookup, interface)),
         {name: text for name in INTERFACE_TERMS if (text := agreement.find_term(name, interface.key))},
-        interface_versions.hash_interface(lookup, interface, rules=1) if is_launched else version,
+        output_promises.hash_interface(lookup, interface, rules=1) if is_launched else version,
     )
 
 
@@ -228,7 +287,7 @@ def _list_facts(lookup: Lookup, interface: PartnerInterface) -> Iterator[Fact]:
     yield from _list_declared_properties(lookup, interface)
     if interface.flow != "physical" and not interface.medium:
         yield from _list_message_facts(lookup, interface)
-    launch_words = dict.fromkeys(sentence for sentence, _ in interface_versions.list_launch_words(interface))
+    launch_words = dict.fromkeys(sentence for sentence, _ in output_promises.list_launch_words(interface))
     if launch_words:
         yield Fact("launch", "As launched", inline_text.join_lines(map(inline_text.message_to_inlines, launch_words)))
     other_components = dict.fromkeys(other_input.component for other_input in interface.other_inputs)
@@ -266,7 +325,7 @@ def _list_promises(
     interface: PartnerInterface,
     ports: Sequence[output_promises.CountedPort],
 ) -> Iterator[PromiseRow]:
-    timing_rows = interface_timing.promise_timing(lookup, activity_names, interface)
+    timing_rows = promise_rows.promise_timing(lookup, activity_names, interface)
     yield from output_promises.add_promises(lookup, activity_names, interface, ports, timing_rows)
     if interface.flow == "topic" and not interface.medium and not is_ros_1(lookup.architecture.distro):
         yield _promise_qos(interface.giver_endpoints)

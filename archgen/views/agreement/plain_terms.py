@@ -17,8 +17,8 @@ from archgen.timing.figures.figure_wording import format_duration
 from archgen.views.agreement.interface_terms import InterfaceEnd, InterfaceTerms
 from archgen.views.agreement.promise_rows import MAX_GAP, RATE, PromiseRow, PromiseStrength
 from archgen.views.graphs.element_boxes import join_owner_titles
+from archgen.views.inline_text import join_runs
 from archgen.views.lookup import Lookup
-from archgen.views.shapes import Inlines
 from archgen.views.timing import value_format
 
 _NODE_TERMS = {RATE.key, MAX_GAP.key, "response"}
@@ -61,9 +61,9 @@ def list_plain_terms(
     for requirement_runs in interface_terms.requirements:
         requirement = requirement_runs[0].text
         key = f"requirement {matched_ids.common_id('requirement', requirement)}"
-        text = _plain_text(requirement_runs[1:]).strip()
+        text = join_runs(requirement_runs[1:]).strip()
         # Without the titles of the components, which are muted.
-        identity = _plain_text(tuple(run for run in requirement_runs[1:] if not run.muted))
+        identity = join_runs(tuple(run for run in requirement_runs[1:] if not run.muted))
         terms[key] = PlainTerm("requirements", f"Requirement {requirement}", text, identity)
     for name, words in interface_terms.agreed.items():
         text = " ".join(words.split())
@@ -90,7 +90,7 @@ def list_contradictions(sentences: Iterable[str], name: str, matched_ids: Matche
 def _fact_terms(interface_terms: InterfaceTerms, matched_ids: MatchedIds) -> Iterator[tuple[str, PlainTerm]]:
     interface = interface_terms.interface
     for key, title, value in interface_terms.facts:
-        text = _plain_text(value)
+        text = join_runs(value)
         identity = text
         if key == "type" and interface.type:
             identity = matched_ids.common_id("type", interface.type)
@@ -114,13 +114,13 @@ def _promise_terms(row: PromiseRow, matched_ids: MatchedIds) -> Iterator[tuple[s
     key = f"{row.name.title} of {node}"
     name, kind = row.name.text, row.name.words
     if row.promised:
-        text = _plain_text(row.promised)
+        text = join_runs(row.promised)
         identity = row.promise_identity or text
         yield f"promised {key}", PlainTerm(kind, f"{name} (promised)", text, identity, strength=row.strength)
     if row.expected:
         # "follows from the rate of NODE". A topic that is called after a renamed component is not treated so: whoever
         # subscribes to it has to follow.
-        text = _plain_text(row.expected)
+        text = join_runs(row.expected)
         identity = matched_ids.rename_in_text(text)
         yield f"expected {key}", PlainTerm(kind, f"{name} (expected)", text, identity, is_expected=True)
 
@@ -167,8 +167,3 @@ def _chain_terms(chain: ChainResult, title: str, common_id: str) -> Iterator[tup
         )
     text = f"{value_format.display_duration(chain.bound)}; {chain.verdict}"
     yield f"chain {common_id}", PlainTerm("chains", f"Chain {title} (expected)", text, text, is_expected=True)
-
-
-def _plain_text(value: Inlines) -> str:
-    """Return the text of runs, lines separated by semicolons."""
-    return "".join(f"; {run.text}" if run.line_break else run.text for run in value)

@@ -11,7 +11,7 @@ from collections.abc import Iterator
 from archgen.model.partner_interfaces import find_interfaces_between
 from archgen.views.agreement.agreement_content import AgreementContent
 from archgen.views.agreement.interface_record import InterfaceKey
-from archgen.views.agreement.interface_versions import list_launch_words
+from archgen.views.agreement.output_promises import list_launch_words
 from archgen.views.agreement.plain_terms import CONTRADICTION_KIND
 from archgen.views.agreement.term_changes import AgreementChanges, TermChange
 

@@ -7,7 +7,7 @@ from urllib.parse import quote
 
 from archgen.diagnostics import Span
 from archgen.frozen import dataclass
-from archgen.model.annotated_elements import Annotated
+from archgen.model.architecture import Annotated
 from archgen.model.component import Component, ComponentType
 from archgen.model.element_annotations import read_figure
 from archgen.model.parameter import format_parameter

@@ -6,7 +6,7 @@ from collections.abc import Iterator, Mapping
 
 from archgen.model.component import Component, ComponentType
 from archgen.model.node import Node
-from archgen.model.parameter import Operation, Parameter, format_parameter
+from archgen.model.parameter import Operation, Parameter, describe_types, format_parameter
 from archgen.model.parameter_values import (
     EVERY_PARAMETER,
     EffectiveParameter,
@@ -80,11 +80,6 @@ def _place_of(component: Component | ComponentType) -> str:
 
 def _type_cell(types: str | Mapping[str, str] | None) -> Inlines:
     return () if types is None else to_inlines(describe_types(types))
-
-
-def describe_types(types: str | Mapping[str, str]) -> str:
-    """Return a type, or types with the names of their fields, on one line."""
-    return types if isinstance(types, str) else ", ".join(f"{name}: {type_name}" for name, type_name in types.items())
 
 
 def describe_missing_value(parameter: Parameter) -> str:

@@ -6,7 +6,7 @@ from collections.abc import Iterator, Mapping, Sequence
 
 from archgen.bringup.plan_shapes import StartPlan, StartStep
 from archgen.bringup.start_plan import make_start_plan
-from archgen.model.start_up import PHASES
+from archgen.model.node import PHASES
 from archgen.views import start_phrases
 from archgen.views.graphs.graph_folding import MAX_BOXES, add_legend_keys
 from archgen.views.inline_text import count_noun

@@ -8,12 +8,13 @@ from archgen.frozen import dataclass, replace
 from archgen.model.component import Component, ComponentType, Group
 from archgen.model.component_nesting import find_component, list_surrounding
 from archgen.views import inline_text
-from archgen.views.elements.component_type_blocks import make_component_type_table, make_type_blocks
 from archgen.views.elements.functional_level import (
     make_component_blocks,
     make_component_table,
+    make_component_type_table,
     make_composed_blocks,
     make_group_blocks,
+    make_type_blocks,
 )
 from archgen.views.elements.implementation_level import make_implementation_blocks, make_node_blocks
 from archgen.views.elements.parameter_blocks import list_equal_settings

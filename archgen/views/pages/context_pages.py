@@ -15,7 +15,7 @@ from archgen.views import inline_text, timing_words
 from archgen.views.element_references import message_link
 from archgen.views.elements import type_fields
 from archgen.views.elements.annotation_facts import list_annotation_facts
-from archgen.views.elements.promise_words import list_topic_facts, write_deprecation
+from archgen.views.elements.port_tables import list_topic_facts, write_deprecation
 from archgen.views.lookup import Lookup
 from archgen.views.sequences.sequence_blocks import make_sequence_blocks
 from archgen.views.shapes import (
@@ -34,7 +34,7 @@ from archgen.views.shapes import (
     make_columns,
     show_known,
 )
-from archgen.views.tables import deployment_tables, requirement_tables, type_tables
+from archgen.views.tables import deployment_tables, functional_tables, requirement_tables
 from archgen.views.timing import element_timing
 
 FigureFilter = Callable[[Iterable[Block]], tuple[Block, ...]]
@@ -47,7 +47,7 @@ _FLOW_TITLES = {"topic": "Topic", "service": "Service", "action": "Action"}
 
 def make_context_pages(lookup: Lookup, keep_drawn: FigureFilter) -> Iterator[Page]:
     """Make a page for each type and use case."""
-    for conceptual_type in sorted(type_tables.shown_types(lookup), key=lambda each: order_naturally(each.name)):
+    for conceptual_type in sorted(functional_tables.shown_types(lookup), key=lambda each: order_naturally(each.name)):
         yield _type_page(lookup, conceptual_type)
     for name in lookup.architecture.use_cases:
         yield _use_case_page(lookup, name, keep_drawn)
@@ -224,10 +224,10 @@ def _shortest_period(node: Node) -> str | None:
 
 def _type_page(lookup: Lookup, conceptual_type: ConceptualType) -> Page:
     facts = [
-        ("Message", type_tables.message_cell(lookup, conceptual_type)),
+        ("Message", functional_tables.message_cell(lookup, conceptual_type)),
         ("Size", _size_cell(lookup, conceptual_type)),
         ("Deprecated", write_deprecation(lookup.architecture, "type", conceptual_type)),
-        ("Remarks", inline_text.to_inlines(type_tables.describe_mapping(conceptual_type))),
+        ("Remarks", inline_text.to_inlines(functional_tables.describe_mapping(conceptual_type))),
         *list_annotation_facts(lookup, conceptual_type),
     ]
     blocks: list[Block] = [show_known(facts)]

@@ -7,8 +7,7 @@ from collections.abc import Iterable, Iterator, Mapping
 from archgen.diagnostics import NO_SPAN, Span
 from archgen.frozen import replace
 from archgen.language.language_tables import SECTION_KINDS
-from archgen.model.architecture import Architecture
-from archgen.model.made_elements import find_made_element
+from archgen.model.architecture import Architecture, find_made_element
 from archgen.views import inline_text
 from archgen.views.element_references import place_run
 from archgen.views.lookup import Lookup

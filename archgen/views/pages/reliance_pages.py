@@ -12,7 +12,7 @@ from archgen.views.agreement.exchange_tables import PartnerExchange
 from archgen.views.lookup import Lookup
 from archgen.views.pages.context_pages import HOME_CRUMB, make_page_slug
 from archgen.views.pages.page_parts import PARTS_KIND
-from archgen.views.reliance import impact_outline, partner_impact, partner_tasks, task_outline
+from archgen.views.reliance import impact_outline, partner_impact, partner_tasks
 from archgen.views.shapes import (
     Block,
     Dashboard,
@@ -53,7 +53,7 @@ def make_reliance_pages(
         page = _make_page(partner, "late", outline, figures, "impact")
         yield replace(page, waterfall=impact_outline.make_use_case_waterfall(lookup, impact))
         tasks = partner_tasks.find_tasks(lookup, exchanges, impact, comparison)
-        outline, figures = task_outline.make_task_outline(lookup, tasks), task_outline.list_task_figures(tasks)
+        outline, figures = partner_tasks.make_task_outline(lookup, tasks), partner_tasks.list_task_figures(tasks)
         yield _make_page(partner, "todo", outline, figures, "todo")
 
 

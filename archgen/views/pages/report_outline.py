@@ -30,7 +30,6 @@ from archgen.views.tables import (
     requirement_tables,
     start_table,
     statistics_tables,
-    type_tables,
 )
 
 if TYPE_CHECKING:
@@ -250,7 +249,7 @@ class _ChapterMaker:
 
     def make_types(self) -> list[Section]:
         """Make the appendix that maps conceptual types to messages."""
-        return self._make_appendix("types", "Type mapping", type_tables.make_type_table(self.lookup))
+        return self._make_appendix("types", "Type mapping", functional_tables.make_type_table(self.lookup))
 
     def make_connections(self) -> list[Section]:
         """Make the appendix of connections."""

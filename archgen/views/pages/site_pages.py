@@ -42,7 +42,6 @@ from archgen.views.tables import (
     requirement_tables,
     start_table,
     statistics_tables,
-    type_tables,
 )
 from archgen.views.timing.chain_waterfall import WATERFALL_FACTS, make_waterfall
 from archgen.views.timing.flow_tables import make_flow_sections
@@ -128,7 +127,7 @@ class PageMaker:
     def message_pages(self) -> MessagePages:
         """Return the maker of the pages on messages: those of shown types and, with the ROS side, of shown topics."""
         topics = context_pages.shown_topics(self.lookup) if self.edition.level == "implementation" else ()
-        return MessagePages(self.lookup, type_tables.shown_types(self.lookup), topics)
+        return MessagePages(self.lookup, functional_tables.shown_types(self.lookup), topics)
 
     def start_page(self) -> Page:
         """Make the start page: the state at a glance, the clickable overview, description, title facts, groups."""
@@ -239,7 +238,7 @@ class PageMaker:
         yield self._spanning_page(
             "connections", "Connections", functional_tables.make_connection_table(self.lookup, shown_connections)
         )
-        yield self._spanning_page("types", "Types", type_tables.make_type_table(self.lookup))
+        yield self._spanning_page("types", "Types", functional_tables.make_type_table(self.lookup))
         yield self._spanning_page("messages", "Messages", self.message_pages().make_list())
         requirement_table = requirement_tables.make_requirement_table(
             self.lookup, requirement_tables.shown_requirements(self.lookup)

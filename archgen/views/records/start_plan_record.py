@@ -6,7 +6,7 @@ from collections.abc import Collection
 
 from archgen.bringup.plan_shapes import DroppedWait, RosLaunch, StartPlan, StartStep
 from archgen.model.architecture import Architecture
-from archgen.model.start_up import PHASES
+from archgen.model.node import PHASES
 from archgen.views.lookup import Lookup, make_lookup
 from archgen.views.records.record_sources import drop_unknown, record_quantity, to_plain
 from archgen.views.records.resolved_record import write_record

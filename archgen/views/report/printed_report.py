@@ -41,7 +41,7 @@ from archgen.views.shapes import (
     Text,
     drop_column,
 )
-from archgen.views.tables import type_tables
+from archgen.views.tables import functional_tables
 
 _TIMING_ANNEX = "Rates, loads and traffic"
 _LARGE_DRAWINGS = ("components", "ros", "timing")
@@ -248,7 +248,7 @@ def make_message_annex(lookup: Lookup) -> Section | None:
     Those of ROS's packages are left out: each distribution documents them, and they would be three times as many.
     """
     interfaces = lookup.architecture.interfaces
-    used_messages = collect_messages(lookup.architecture, type_tables.shown_types(lookup), shown_topics(lookup))
+    used_messages = collect_messages(lookup.architecture, functional_tables.shown_types(lookup), shown_topics(lookup))
     own_messages = [
         message
         for message in sorted(used_messages)

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
 
-from archgen.model.annotated_elements import Annotated
+from archgen.model.architecture import Annotated
 from archgen.model.component import Component, Connection, Group, Input, Output
 from archgen.model.component_nesting import find_component
 from archgen.views import inline_text
-from archgen.views.elements import promise_words
+from archgen.views.elements import port_tables
 from archgen.views.elements.element_names import join_surrounding_titles
 from archgen.views.lookup import Lookup
 from archgen.views.search.search_entry import SearchEntry, join_entry_parts, to_plain_text
@@ -103,7 +103,7 @@ def make_component_type_entries(lookup: Lookup) -> Iterator[SearchEntry]:
         yield SearchEntry(
             "component type",
             component_type.title,
-            join_entry_parts("type of components", *promise_words.list_text_remarks(component_type)),
+            join_entry_parts("type of components", *port_tables.list_text_remarks(component_type)),
             (f"component_type:{component_type.id}",),
             (component_type.id, f"is:{component_type.id}", *make_property_keys(component_type)),
             to_plain_text(component_type.functionality, component_type.description),
@@ -132,7 +132,7 @@ def make_port_entries(lookup: Lookup) -> Iterator[SearchEntry]:
                 join_entry_parts(
                     f"{direction} of {suffix}",
                     port.type,
-                    *(promise_words.list_text_remarks(port) if isinstance(port, Output) else ()),
+                    *(port_tables.list_text_remarks(port) if isinstance(port, Output) else ()),
                 ),
                 (f"table:{direction}s/{component.id}", f"component:{component.id}"),
                 (),

@@ -6,17 +6,18 @@ from collections.abc import Callable, Iterable, Iterator, Mapping
 from typing import cast
 
 from archgen.language.language_tables import DATA_PARTS, ENTRIES, KEYS, SECTION_KINDS
-from archgen.model.annotated_elements import Annotated
+from archgen.model.architecture import Annotated
 from archgen.model.component import Connection, Input, Output
 from archgen.model.component_nesting import find_relied_output
 from archgen.model.node import Topic
+from archgen.model.parameter import describe_types
 from archgen.model.parameter_values import find_effective_parameters
 from archgen.model.port_media import name_on_medium, nature_of, uses_ros, word_of_medium
-from archgen.views.elements import parameter_blocks, promise_words
+from archgen.views.elements import parameter_blocks, port_tables
 from archgen.views.elements.annotation_facts import format_fact
 from archgen.views.elements.frame_users import index_frame_ports, list_shown_frames
 from archgen.views.lookup import Lookup
-from archgen.views.tables import functional_tables, requirement_tables, type_tables
+from archgen.views.tables import functional_tables, requirement_tables
 from archgen.views.tables.start_table import START_COLUMNS, list_start_rows
 
 TextRow = tuple[str, ...]
@@ -80,7 +81,7 @@ def _describe_words(lookup: Lookup, connection: Connection) -> tuple[str, str, s
     architecture = lookup.architecture
     leaves = (architecture.outputs[output] for output in connection.outputs)
     ports = {port.id: port for leaf in leaves for port in (find_relied_output(architecture, connection, leaf),)}
-    facts = [tuple(value for _, value in promise_words.list_card_facts(port)) for port in ports.values()]
+    facts = [tuple(value for _, value in port_tables.list_card_facts(port)) for port in ports.values()]
     promises, versions, deprecations = (
         ("; ".join(dict.fromkeys(filter(None, values))) for values in zip(*facts, strict=True))
         if facts
@@ -167,8 +168,8 @@ def _list_shown_carriers(lookup: Lookup) -> list[Topic]:
 
 
 def _type_rows(lookup: Lookup) -> _Rows:
-    for each in type_tables.shown_types(lookup):
-        yield each.name, each.message, lookup.format_size(each), type_tables.describe_mapping(each)
+    for each in functional_tables.shown_types(lookup):
+        yield each.name, each.message, lookup.format_size(each), functional_tables.describe_mapping(each)
 
 
 def _requirement_rows(lookup: Lookup) -> _Rows:
@@ -219,7 +220,7 @@ def _operation_rows(lookup: Lookup) -> _Rows:
     for group in lookup.shown_groups():
         for component in lookup.shown_components(group):
             for each in component.operations.values():
-                types = (parameter_blocks.describe_types(types or "") for types in (each.request, each.response))
+                types = (describe_types(types or "") for types in (each.request, each.response))
                 yield each.id, component.id, *types, each.call, each.visibility, each.at
 
 

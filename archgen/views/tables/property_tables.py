@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from archgen.diagnostics import join_words
-from archgen.model.annotated_elements import AnnotatedElement, list_annotated_elements
+from archgen.model.architecture import AnnotatedElement, list_annotated_elements
 from archgen.model.element_annotations import PropertyDeclaration, describe_range
 from archgen.views import inline_text
 from archgen.views.elements.annotation_facts import title_property, write_property

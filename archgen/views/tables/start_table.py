@@ -7,7 +7,7 @@ from collections.abc import Collection, Iterator, Mapping
 
 from archgen.bringup.plan_shapes import StartPlan, StartStep
 from archgen.bringup.start_plan import make_start_plan
-from archgen.model.start_up import PHASES
+from archgen.model.node import PHASES
 from archgen.views import inline_text, start_phrases
 from archgen.views.lookup import Lookup
 from archgen.views.shapes import Block, Bullets, Inlines, Paragraph, Table, Text, make_columns

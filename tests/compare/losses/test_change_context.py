@@ -11,7 +11,7 @@ from archgen.compare import Change
 from archgen.compare.comparison import ChangeKind
 from archgen.compare.losses.change_context import ChangeContext, PartnerLoss, tick_name, tick_sorted_names
 from archgen.compare.losses.fallen_figures import _has_grown as has_grown
-from archgen.compare.losses.missed_deadlines import _lateness_reason as lateness_reason
+from archgen.compare.losses.fallen_figures import _lateness_reason as lateness_reason
 from archgen.compare.losses.timing_causes import TimingCauses
 from archgen.compare.losses.weakened_demands import _drops_requirement as drops_requirement
 from archgen.compare.matched_ids import MatchedIds

@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from archgen.compare.losses.change_context import ChangeContext
-from archgen.compare.losses.foreign_edits import find_foreign_edits
+from archgen.compare.losses.weakened_outputs import find_foreign_edits
 from archgen.compare.review_facts import ReviewFacts
 from tests.compare.conftest import Compared
 

@@ -7,8 +7,8 @@ from fractions import Fraction
 
 import pytest
 
-from archgen.compare.losses.missed_deadlines import _bound_has_grown as bound_has_grown
-from archgen.compare.losses.missed_deadlines import _format_bound as format_bound
+from archgen.compare.losses.fallen_figures import _bound_has_grown as bound_has_grown
+from archgen.compare.losses.fallen_figures import _format_bound as format_bound
 from archgen.timing.figures.timing_values import TimingValue
 from tests.compare.conftest import Compared
 from tests.compare.losses.test_losses import broken

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from archgen.derivation.wire.launch_words import list_rule_words
+from archgen.derivation.wire.wire_names import list_rule_words
 from archgen.model.node import Node
 
 

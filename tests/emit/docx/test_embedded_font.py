@@ -12,7 +12,7 @@ from docx.opc.packuri import PackURI
 from docx.opc.part import Part
 
 from archgen.emit.docx import write
-from archgen.emit.docx.embedded_font import CODE_FONT
+from archgen.emit.docx.docx_writer import CODE_FONT
 from archgen.views.shapes import Column, Outline, Paragraph, Section, Table, Text
 
 CODE = Text("/scan", code=True)

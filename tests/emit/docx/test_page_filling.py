@@ -6,8 +6,7 @@ from dataclasses import replace
 
 import pytest
 
-from archgen.emit.docx.page_flow import FlowPiece, ScalablePicture, fill_pages
-from archgen.emit.docx.paper_sheets import PaperSheet
+from archgen.emit.docx.page_flow import FlowPiece, PaperSheet, ScalablePicture, fill_pages
 
 _SHEET = PaperSheet(400, 1000, 0, 0, 0, 0)
 """A page of 1000 points."""

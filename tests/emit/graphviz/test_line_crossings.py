@@ -7,7 +7,7 @@ from itertools import pairwise
 
 import pytest
 
-from archgen.emit.graphviz.line_crossings import count_crossings, line_length
+from archgen.emit.graphviz.label_places import count_crossings, line_length
 from archgen.emit.graphviz.placed_scene import SceneLine, ScenePoint
 
 

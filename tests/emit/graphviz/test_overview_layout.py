@@ -10,8 +10,7 @@ import pytest
 
 from archgen import pipeline
 from archgen.emit.graphviz import graph_drawing, palette
-from archgen.emit.graphviz.label_places import sample_line
-from archgen.emit.graphviz.line_crossings import count_crossings
+from archgen.emit.graphviz.label_places import count_crossings, sample_line
 from archgen.emit.graphviz.overview_layout import lay_out_overview
 from archgen.emit.graphviz.placed_scene import Scene, SceneLine
 from archgen.emit.graphviz.styled_graph import style_graph

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 
 import pytest
 
-from archgen.emit.graphviz.line_crossings import count_crossings
+from archgen.emit.graphviz.label_places import count_crossings
 from archgen.emit.graphviz.placed_scene import SceneLine
 from archgen.model.architecture import Waypoint
 from archgen.pipeline import check_project

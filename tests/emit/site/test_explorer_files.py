@@ -7,7 +7,7 @@ import re
 
 import pytest
 
-from archgen.emit.site import status_marks
+from archgen.emit.site import html_text
 from archgen.emit.site.page_links import SiteLinks
 from archgen.emit.site.script_files import build_explorer_files, find_explorer_address, list_explorer_scripts
 from archgen.views.explorer.map_shapes import ExplorerMap
@@ -41,7 +41,7 @@ def test_rows_stand_with_the_addresses_of_their_pages() -> None:
         ("groups", [["groups/a.html", "a", "A", [1, -0.5]], ["", "none", "", []]]),
         ("components", [["groups/a.html#b", "a.b"]]),
         ("keys", [["tag", "group:a"]]),
-        ("icons", [list(icon) for icon in status_marks.list_icons()]),
+        ("icons", [list(icon) for icon in html_text.list_icons()]),
     ]
 
 

@@ -7,7 +7,14 @@ from collections.abc import Sequence
 import pytest
 import yaml
 
-from archgen.passes.patterns.matching import IndexToken, list_tokens, match_view
+from archgen.passes.patterns.matching import (
+    BudgetExceededError,
+    IndexToken,
+    MatchBudget,
+    list_tokens,
+    match_text,
+    match_view,
+)
 from archgen.passes.patterns.pattern_shapes import (
     ComponentBody,
     PortReference,
@@ -16,7 +23,6 @@ from archgen.passes.patterns.pattern_shapes import (
     parse_text_pattern,
 )
 from archgen.passes.patterns.rule_reading import RuleReader
-from archgen.passes.patterns.value_matching import BudgetExceededError, MatchBudget, match_text
 from archgen.syntax.yaml_parser import parse_yaml
 
 

@@ -9,7 +9,7 @@ import yaml
 
 from archgen.diagnostics.diagnostic import Diagnostic
 from archgen.passes.pass_shape import STATES, PassWork
-from archgen.passes.patterns.pass_shapes import PatternPass
+from archgen.passes.patterns.expressions import PatternPass
 from archgen.passes.patterns.pattern_registry import ReadPass, read_pass
 from archgen.passes.patterns.rule_running import run_rules
 from archgen.passes.project_tree import ProjectTree

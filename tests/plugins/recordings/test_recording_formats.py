@@ -8,8 +8,8 @@ from pathlib import Path
 import pytest
 
 from archgen.importers.foreign_import import RecordingRefusedError
+from archgen.plugins.recordings.recorded_figures import RecordingSource
 from archgen.plugins.recordings.recording_import import find_format, find_recording_file
-from archgen.plugins.recordings.recording_lines import RecordingSource
 
 
 def _find_format(data: bytes) -> str:

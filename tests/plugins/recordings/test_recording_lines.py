@@ -5,7 +5,7 @@ from __future__ import annotations
 import io
 
 from archgen.diagnostics.diagnostic import Severity
-from archgen.plugins.recordings.recording_lines import MAX_LINE_BYTES, Oddities, OddityText, RecordingSource
+from archgen.plugins.recordings.recorded_figures import MAX_LINE_BYTES, Oddities, OddityText, RecordingSource
 
 
 def _read(data: bytes) -> list[tuple[int, str]]:

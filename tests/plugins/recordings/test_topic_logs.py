@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from archgen.plugins.recordings.topic_logs import is_topic_log_line
+from archgen.plugins.recordings.recording_import import is_topic_log_line
 from tests.plugins.recordings.recorded import list_figures, list_problems, list_unmapped, read
 
 BLOCK = "average rate: 20.000\n\tmin: 0.048s max: 0.052s std dev: 0.00043s window: 21\n"

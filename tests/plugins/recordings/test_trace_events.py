@@ -6,7 +6,7 @@ import io
 
 import pytest
 
-from archgen.plugins.recordings.recording_lines import Oddities, RecordingError, RecordingSource
+from archgen.plugins.recordings.recorded_figures import Oddities, RecordingError, RecordingSource
 from archgen.plugins.recordings.trace_events import TraceEvent, TraceLoss, is_trace_line, read_trace_events
 
 EVENT = "(+0.000000001) robot ros2:callback_end: { cpu_id = 3 }, { vpid = 7, vtid = 8 }, { callback = 0x5 }"

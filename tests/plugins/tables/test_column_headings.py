@@ -5,8 +5,7 @@ from __future__ import annotations
 import pytest
 
 from archgen.diagnostics.source_span import NO_SPAN
-from archgen.plugins.tables.column_headings import TableHeadings, read_headings, read_new_headings
-from archgen.plugins.tables.table_cells import TableCell
+from archgen.plugins.tables.table_cells import TableCell, TableHeadings, read_headings, read_new_headings
 
 
 def _row(text: str) -> dict[int, TableCell]:

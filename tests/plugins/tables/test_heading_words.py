@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from archgen.plugins.tables.column_headings import HEADING_WORDS, KEY_BY_HEADING, TARGETS, fold_heading, key_of_heading
+from archgen.plugins.tables.table_cells import HEADING_WORDS, KEY_BY_HEADING, TARGETS, fold_heading, key_of_heading
 
 SPELLINGS = [
     (language, key, word.strip())

@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from archgen.plugins.tables import table_import
-from archgen.plugins.tables.column_headings import parse_heading_map
+from archgen.plugins.tables.table_cells import parse_heading_map
 from archgen.plugins.tables.table_import import render_import_summary
 from tests.plugins.tables.test_cell_ledger import find_silent_losses
 from tests.workbooks import make_workbook

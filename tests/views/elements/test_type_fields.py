@@ -12,7 +12,7 @@ from archgen.views.pages.message_pages import MessagePages
 from archgen.views.records.resolved_record import make_record, write_record
 from archgen.views.search import make_message_entries
 from archgen.views.shapes import Facts, Table
-from archgen.views.tables import type_tables
+from archgen.views.tables import functional_tables
 
 ROBOT = """\
 archgen: 1
@@ -73,7 +73,7 @@ def test_cards_and_lists(lookup: Lookup) -> None:
     assert dict(make_card(lookup, "type", "Mode").facts)["values"] == "IDLE, RUN"
     assert dict(make_card(lookup, "type", "Fetch").lists)["fields"][0] == "request.what: string"
     types = lookup.architecture.types
-    assert [type_tables.describe_mapping(types[name]) for name in ("Mode", "Box", "Box<Mode>")] == [
+    assert [functional_tables.describe_mapping(types[name]) for name in ("Mode", "Box", "Box<Mode>")] == [
         "one of IDLE, RUN",
         "generic in T",
         "",

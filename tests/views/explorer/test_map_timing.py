@@ -7,7 +7,7 @@ from pathlib import Path
 from archgen import pipeline
 from archgen.products.output_options import OutputOptions
 from archgen.products.product_inputs import ProductInputs
-from archgen.views.explorer.map_timing import make_timing_tables
+from archgen.views.explorer.explorer_map import make_timing_tables
 from archgen.views.lookup import make_lookup
 
 ROBOT = """\

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from archgen.views.graphs.changes.picture_folding import fold_neighbours
+from archgen.views.graphs.changes.merged_versions import fold_neighbours
 from archgen.views.picture_shapes import Arrow, Box, Cluster, Graph
 
 

@@ -7,8 +7,7 @@ from pathlib import Path
 from archgen.products.agreement_documents import make_timed_lookup
 from archgen.views.agreement.exchange_tables import gather_exchanges
 from archgen.views.reliance.partner_impact import find_impact, find_parts_of
-from archgen.views.reliance.partner_tasks import find_tasks
-from archgen.views.reliance.task_outline import make_task_outline
+from archgen.views.reliance.partner_tasks import find_tasks, make_task_outline
 from archgen.views.shapes import Outline, Table
 from tests.late_robot import ROBOT, check
 

@@ -12,13 +12,12 @@ from typing import Any
 from archgen.plugin import dataclass
 from archgen.plugin.generating import write_place
 from archgen.plugin.model import Architecture, Component, ComponentType, Node, is_physical
-from archgen.plugins.aadl.views.aadl_behaviours import Behaviour
-from archgen.plugins.aadl.views.aadl_hints import list_own_sources
-from archgen.plugins.aadl.views.aadl_processes import NodeProcess
+from archgen.plugins.aadl.views.aadl_processes import Behaviour, NodeProcess
 from archgen.plugins.aadl.views.aadl_words import (
     AadlProperty,
     NameSpace,
     list_component_words,
+    list_own_sources,
     make_classifier,
     make_item,
     make_named_properties,

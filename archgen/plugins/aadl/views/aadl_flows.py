@@ -15,8 +15,7 @@ from archgen.plugin import dataclass
 from archgen.plugin.model import Architecture, Chain
 from archgen.plugin.timing import Analysis, Arc, ChainResult, ChainTerm
 from archgen.plugins.aadl.views.aadl_ports import PortPart
-from archgen.plugins.aadl.views.aadl_processes import NodeProcess
-from archgen.plugins.aadl.views.aadl_system_part import SystemPart
+from archgen.plugins.aadl.views.aadl_processes import NodeProcess, SystemPart
 from archgen.plugins.aadl.views.aadl_system_tree import Route, SystemTree
 from archgen.plugins.aadl.views.aadl_types import UNTYPED, TypeBook
 from archgen.plugins.aadl.views.aadl_words import AadlProperty, can_be_written, make_item, make_property, write_range

@@ -1,35 +1,236 @@
-"""A node as a process of AADL: what it sends and reads as features, and a thread for each component that it implements."""
+"""A node as a process of AADL: what it sends and reads as features, and a thread for each component that it implements; a
+group or a composed component as a system, with what grows in it.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
+from fractions import Fraction
 from typing import Any
 
 from archgen.plugin.generating import title_from_id, write_place
-from archgen.plugin.model import Architecture, Component, Endpoint, Node, Timing
-from archgen.plugins.aadl.views.aadl_behaviours import Behaviour
-from archgen.plugins.aadl.views.aadl_hints import (
-    find_thread_name,
-    has_tf_access,
-    list_function_properties,
-    list_source_properties,
-    read_aadl_hints,
-)
-from archgen.plugins.aadl.views.aadl_ports import PortPart, find_outer_port
-from archgen.plugins.aadl.views.aadl_system_part import SystemPart
+from archgen.plugin.model import Architecture, Component, Endpoint, Group, Node, Timing, uses_ros
+from archgen.plugins.aadl.views.aadl_ports import PortPart, find_outer_port, list_port_parts
 from archgen.plugins.aadl.views.aadl_types import TypeBook
 from archgen.plugins.aadl.views.aadl_words import (
     AadlProperty,
     FlowBook,
     NameSpace,
+    can_be_written,
+    find_thread_name,
+    has_tf_access,
     list_component_words,
+    list_function_properties,
+    list_source_properties,
+    list_tags,
     make_classifier,
+    make_duration_property,
     make_item,
     make_named_properties,
     make_property,
     make_text_properties,
+    read_aadl_hints,
+    write_aadl_duration,
     write_aadl_string,
+    write_range,
 )
+
+_Place = tuple[str, object]
+"""A port of a composed component with what it carries, or a node with the key of its port."""
+
+
+class SystemPart:
+    """A system: the launch of everything, a group, or a composed component; it grows as connections and flows are found."""
+
+    def __init__(
+        self, name: str, classifier: str, parent: SystemPart | None, element: Group | Component | None
+    ) -> None:
+        """Begin with nothing inside; `name` is what it is called in the system around it."""
+        self.name, self.classifier, self.parent, self.element = name, classifier, parent, element
+        self.names = NameSpace()
+        self.features: dict[_Place, str] = {}
+        self.feature_items: list[dict[str, Any]] = []
+        self.subcomponents: list[dict[str, Any]] = []
+        self.connections: list[dict[str, Any]] = []
+        self.flow_specs: list[dict[str, Any]] = []
+        self.flows: list[dict[str, Any]] = []
+        self.properties: list[AadlProperty] = []
+        self._joined: dict[tuple[str, str], str] = {}
+        self.accesses: dict[str, str] = {}
+        """The names of its accesses to what something inside needs of the outermost system."""
+
+    @property
+    def path(self) -> tuple[SystemPart, ...]:
+        """The systems that lead here, from the outermost on."""
+        return (*(self.parent.path if self.parent else ()), self)
+
+    def name_inside(self, scope: SystemPart, name: str) -> str:
+        """Return how something of this system is named from a system around it: `group.arm.motor`."""
+        steps = self.path[len(scope.path) :]
+        return ".".join((*(each.name for each in steps), name))
+
+    def connect(self, name: str, text: str, properties: list[AadlProperty]) -> str:
+        """Add a connection; return its name."""
+        own_name = self.names.take_name(name)
+        self.connections.append(make_item(own_name, text, properties))
+        return own_name
+
+    def join_ends(self, name: str, kind: str, ends: tuple[str, str], properties: list[AadlProperty]) -> str:
+        """Join two ends that may be joined already; return the connection's name."""
+        if ends not in self._joined:
+            self._joined[ends] = self.connect(name, f"{kind} {ends[0]} -> {ends[1]}", properties)
+        return self._joined[ends]
+
+    def make_classifiers(self, properties: list[AadlProperty]) -> list[dict[str, Any]]:
+        """Return its type, with further properties, and its implementation."""
+        own_type = make_classifier("system", self.classifier, features=self.feature_items, flows=self.flow_specs)
+        own_type.update(properties=properties, place=write_place(self.element.at) if self.element else "")
+        implementation = make_classifier("system", f"{self.classifier}.impl")
+        implementation.update(
+            subcomponents=self.subcomponents,
+            connections=self.connections,
+            flows=self.flows,
+            properties=self.properties,
+        )
+        return [own_type, implementation]
+
+
+def list_system_properties(element: Group | Component) -> list[AadlProperty]:
+    """Return what a group or a composed component says of itself."""
+    own_id = element.id.rpartition(".")[2]
+    texts: Mapping[str, str | None] = {
+        "description": element.description,
+        "functionality": getattr(element, "functionality", None),
+        "owner": element.owner,
+    }
+    return [
+        *(each for each in make_named_properties(own_id, own_id, element.title)),
+        *make_text_properties(**texts),
+        *list_tags(element),
+    ]
+
+
+_DISPATCH = {"periodic": "Periodic", "event": "Aperiodic", "on_demand": "Aperiodic", "once": "Background"}
+_ROLES = {
+    "ros::publisher": "source",
+    "ros::callback": "sink",
+    "ros::call_pub": "filter",
+    "ros::service_provider": "reactive",
+}
+"""What the patterns say of the role."""
+_INHERITED_NAMES = ("ist", "tf", "function", "pc")
+"""What a thread has from the library: no port of its own is called so."""
+_PROTOTYPES = {"msg": "message", "srv": "service", "msg_in": "message_in", "msg_out": "message_out"}
+"""What the types of the ports of the library's threads are called."""
+
+
+class Behaviour:
+    """A component's thread: its classifiers, and how its ports are called there."""
+
+    def __init__(self, architecture: Architecture, types: TypeBook, component: Component, timing: Timing) -> None:
+        """Choose the pattern of a component that a node implements."""
+        self.component = component
+        self.timing = timing
+        self.parts = list_port_parts(architecture, types, component, frozenset(self._list_triggers()))
+        self.pattern, fixed_names = self._choose_pattern()
+        names = NameSpace(_INHERITED_NAMES)
+        self.port_names = {part.key: fixed_names.get(part.key) or names.take_name(part.name) for part in self.parts}
+        """The names of its ports in the thread."""
+        self.is_refined = bool(fixed_names)
+
+    @property
+    def further_role(self) -> str | None:
+        """The role of the component where the pattern does not say it."""
+        return self.component.role if _ROLES.get(self.pattern) != self.component.role else None
+
+    @property
+    def uses_tf(self) -> bool:
+        """Whether it has access to the transformations, as all patterns of ROS have."""
+        return self.pattern.startswith("ros::")
+
+    @property
+    def behaviour(self) -> str | None:
+        """What activates it, as far as it is written."""
+        timing = self.timing
+        return timing.behaviour or ("periodic" if timing.period or timing.rate else "event" if timing.trigger else None)
+
+    def _list_triggers(self) -> tuple[str, ...]:
+        if self.behaviour == "periodic":
+            return ()
+        trigger = self.timing.trigger
+        known = tuple(port.id for port in self.component.inputs.values())
+        return known if trigger is None or trigger.inputs is None else trigger.inputs
+
+    def _choose_pattern(self) -> tuple[str, dict[tuple[bool, str, str], str]]:
+        """Return the library's thread, and the names that ports have there."""
+        role, is_periodic = self.component.role, self.behaviour == "periodic"
+        kinds = [part.kind for part in self.parts]
+        keys = [part.key for part in self.parts]
+        if all(uses_ros(part.port) for part in self.parts):
+            if kinds == ["out data port"] and is_periodic and role in {None, "source"}:
+                return "ros::publisher", {keys[0]: "msg"}
+            if kinds == ["in event data port"] and role in {None, "sink"}:
+                return "ros::callback", {keys[0]: "msg"}
+            if kinds == ["provides subprogram access"] and not is_periodic and role in {None, "reactive"}:
+                return "ros::service_provider", {keys[0]: "srv"}
+            if kinds == ["in event data port", "out data port"] and role in {None, "filter"}:
+                return "ros::call_pub", {keys[0]: "msg_in", keys[1]: "msg_out"}
+        return ("ros::timer", {}) if is_periodic else ("cnc::component_behaviour", {})
+
+    def make_classifiers(self, name: str) -> list[dict[str, Any]]:
+        """Return the thread's type and its implementation, made from the pattern."""
+        features = []
+        for part in self.parts:
+            own_name = self.port_names[part.key]
+            text = f"refined to {part.text}" if self.is_refined else part.text
+            features.append(make_item(own_name, text))
+        bindings = self._list_bindings() if self.is_refined else []
+        extends = f"{self.pattern} ({', '.join(bindings)})" if bindings else self.pattern
+        return [
+            make_classifier("thread", name, extends=extends, features=features),
+            make_classifier("thread", f"{name}.impl", extends=f"{self.pattern}.impl"),
+        ]
+
+    def _list_bindings(self) -> list[str]:
+        """Return what the prototypes of the pattern stand for."""
+        return [
+            f"{_PROTOTYPES[self.port_names[part.key]]} => "
+            f"{'data' if part.flow == 'topic' else 'subprogram'} {part.classifier}"
+            for part in self.parts
+        ]
+
+    def list_properties(self) -> list[AadlProperty]:
+        """Return how the thread is dispatched, and what of its timing AADL has a word for."""
+        timing, found = self.timing, list[AadlProperty]()
+        if self.behaviour:
+            found.append(make_property("Dispatch_Protocol", _DISPATCH[self.behaviour]))
+        if timing.period:
+            found += make_duration_property("Period", timing.period)
+        elif timing.rate and timing.rate.value:
+            period = Fraction(10**9) / timing.rate.value
+            if can_be_written(period):
+                found.append(make_property("Period", write_aadl_duration(period)))
+            found += make_text_properties(rate=str(timing.rate))
+        found += make_duration_property("Deadline", timing.deadline)
+        found += make_duration_property("Dispatch_Jitter", timing.jitter)
+        if timing.wcet and can_be_written(timing.wcet.value):
+            lowest = timing.bcet.value if timing.bcet else Fraction(0)
+            found.append(make_property("Compute_Execution_Time", write_range(lowest, timing.wcet.value)))
+        if timing.priority is not None:
+            found.append(make_property("Priority", str(timing.priority)))
+        return found
+
+    def find_part(self, port_id: str, *, is_output: bool, source_id: str = "") -> PortPart | None:
+        """Return the part of a port; of an input that on which an output arrives."""
+        return next(
+            (
+                part
+                for part in self.parts
+                if part.port.id == port_id and part.is_output is is_output and (is_output or part.reads(source_id))
+            ),
+            None,
+        )
+
 
 _TF_TOPICS = frozenset({"/tf", "/tf_static"})
 _LONGEST_QUEUE = 512

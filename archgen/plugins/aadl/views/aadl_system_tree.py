@@ -5,8 +5,7 @@ from __future__ import annotations
 from archgen.plugin import dataclass
 from archgen.plugin.model import Architecture, Component, Group
 from archgen.plugins.aadl.views.aadl_ports import PortPart, find_outer_port
-from archgen.plugins.aadl.views.aadl_processes import NodeProcess
-from archgen.plugins.aadl.views.aadl_system_part import SystemPart
+from archgen.plugins.aadl.views.aadl_processes import NodeProcess, SystemPart
 from archgen.plugins.aadl.views.aadl_words import (
     AadlProperty,
     NameSpace,

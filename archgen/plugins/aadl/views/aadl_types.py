@@ -9,15 +9,16 @@ from typing import Any
 from archgen.plugin.generating import write_place
 from archgen.plugin.model import PART_KEYS, Architecture, ConceptualType, DataField, flow_of
 from archgen.plugin.ros import full_message_name
-from archgen.plugins.aadl.views.aadl_hints import list_own_sources, read_aadl_hints
 from archgen.plugins.aadl.views.aadl_words import (
     AadlProperty,
     NameSpace,
+    list_own_sources,
     make_classifier,
     make_item,
     make_named_properties,
     make_property,
     make_text_properties,
+    read_aadl_hints,
     write_aadl_string,
     write_texts,
 )

@@ -21,11 +21,9 @@ from archgen.plugins.aadl.views.aadl_component_types import (
     list_shared_types,
 )
 from archgen.plugins.aadl.views.aadl_flows import FlowWriter, RouteEnds, RouteFinder
-from archgen.plugins.aadl.views.aadl_hints import list_own_sources, read_aadl_hints
 from archgen.plugins.aadl.views.aadl_platform import Platform
 from archgen.plugins.aadl.views.aadl_ports import PortPart
-from archgen.plugins.aadl.views.aadl_processes import NodeProcess
-from archgen.plugins.aadl.views.aadl_system_part import SystemPart, list_system_properties
+from archgen.plugins.aadl.views.aadl_processes import NodeProcess, SystemPart, list_system_properties
 from archgen.plugins.aadl.views.aadl_system_tree import Route, SystemTree
 from archgen.plugins.aadl.views.aadl_types import TypeBook
 from archgen.plugins.aadl.views.aadl_words import (
@@ -33,11 +31,13 @@ from archgen.plugins.aadl.views.aadl_words import (
     FlowBook,
     NameSpace,
     can_be_written,
+    list_own_sources,
     make_aadl_name,
     make_item,
     make_named_properties,
     make_property,
     make_text_properties,
+    read_aadl_hints,
     write_aadl_string,
     write_range,
     write_texts,

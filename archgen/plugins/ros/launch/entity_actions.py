@@ -5,8 +5,7 @@ from __future__ import annotations
 import textwrap
 from typing import Any, ClassVar
 
-from archgen.plugins.ros.launch.launch_actions import ConditionalValue, LaunchAction
-from archgen.plugins.ros.launch.launch_entities import EntityReader, LaunchEntity
+from archgen.plugins.ros.launch.launch_entities import ConditionalValue, EntityReader, LaunchAction, LaunchEntity
 from archgen.plugins.ros.launch.launch_parameter_values import FILE_KIND, read_inline_value, read_inline_values
 from archgen.plugins.ros.launch.launch_values import LaunchValue, Substitution, UnknownValue, describe_launch_value
 from archgen.plugins.ros.launch.substitution_texts import fill_in_values, read_substituted_text

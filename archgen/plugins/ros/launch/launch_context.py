@@ -15,7 +15,7 @@ from dataclasses import dataclass, field
 from typing import Any
 
 from archgen.plugin.importing import WorkBudget
-from archgen.plugins.ros.launch.launch_actions import LaunchCondition
+from archgen.plugins.ros.launch.launch_entities import LaunchCondition
 from archgen.plugins.ros.launch.launch_values import (
     MAX_TEXT,
     OPEN,

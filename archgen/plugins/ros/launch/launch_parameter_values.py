@@ -27,8 +27,8 @@ from archgen.plugin.importing import (
 )
 from archgen.plugin.model import is_parameter_name, read_scheduling
 from archgen.plugin.ros import ParameterText, matches_node_name, read_parameter_text
-from archgen.plugins.ros.launch.launch_actions import LaunchCondition, LaunchedNode, join_names
 from archgen.plugins.ros.launch.launch_context import LaunchContext
+from archgen.plugins.ros.launch.launch_entities import LaunchCondition, LaunchedNode, join_names
 from archgen.plugins.ros.launch.launch_values import (
     OPEN,
     LaunchValue,

@@ -9,8 +9,8 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 from archgen.plugin.importing import Span
-from archgen.plugins.ros.launch.launch_actions import LaunchAction, LaunchedNode, join_names
 from archgen.plugins.ros.launch.launch_context import LaunchContext, LaunchScope
+from archgen.plugins.ros.launch.launch_entities import LaunchAction, LaunchedNode, join_names
 from archgen.plugins.ros.launch.launch_files import LaunchFiles
 from archgen.plugins.ros.launch.launch_parameter_values import (
     FILE_KIND,

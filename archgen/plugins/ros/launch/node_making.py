@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from archgen.plugin.importing import STEPS_OF_A_KEPT_VALUE, find_program_name
-from archgen.plugins.ros.launch.launch_actions import LaunchAction, LaunchedNode, join_names
+from archgen.plugins.ros.launch.launch_entities import LaunchAction, LaunchedNode, join_names
 from archgen.plugins.ros.launch.launch_parameter_values import (
     FILE_KIND,
     FileRewrites,

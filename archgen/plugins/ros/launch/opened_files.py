@@ -13,7 +13,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from archgen.plugins.ros.launch.launch_values import OPEN_FILE, LaunchValue, Substitution, UnknownValue
-from archgen.plugins.ros.launch.python_methods import MethodReader
+from archgen.plugins.ros.launch.python_actions import MethodReader
 from archgen.plugins.ros.launch.python_values import BoundMethod, CallArguments, RecordValue
 
 if TYPE_CHECKING:

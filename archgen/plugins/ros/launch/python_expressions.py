@@ -10,8 +10,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from archgen.plugin.importing import CHARACTERS_IN_A_STEP, Span
-from archgen.plugins.ros.launch.launch_actions import LaunchAction
 from archgen.plugins.ros.launch.launch_context import LaunchContext
+from archgen.plugins.ros.launch.launch_entities import LaunchAction
 from archgen.plugins.ros.launch.launch_values import LaunchValue, Substitution, UnknownValue, copy_value, join_values
 from archgen.plugins.ros.launch.python_values import (
     BoundMethod,

@@ -13,7 +13,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from archgen.plugin.importing import ForeignFileError, Span
-from archgen.plugins.ros.launch.launch_actions import LaunchAction, LaunchCondition
+from archgen.plugins.ros.launch.launch_entities import LaunchAction, LaunchCondition
 from archgen.plugins.ros.launch.launch_parameter_values import FILE_KIND, FileRewrites
 from archgen.plugins.ros.launch.launch_values import MAX_TEXT, LaunchValue, Substitution, UnknownValue
 from archgen.plugins.ros.launch.opened_files import OpenedFileReader

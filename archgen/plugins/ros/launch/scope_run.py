@@ -11,7 +11,8 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 from archgen.plugin.importing import ForeignFileError, ImportNote, Span, WorkBudget, find_closest, read_bounded
-from archgen.plugins.ros.launch.launch_actions import (
+from archgen.plugins.ros.launch.launch_context import LaunchContext
+from archgen.plugins.ros.launch.launch_entities import (
     ActionKind,
     ConditionalValue,
     LaunchAction,
@@ -19,7 +20,6 @@ from archgen.plugins.ros.launch.launch_actions import (
     clean_name,
     join_names,
 )
-from archgen.plugins.ros.launch.launch_context import LaunchContext
 from archgen.plugins.ros.launch.launch_files import MAX_LAUNCH_BYTES, LaunchFiles
 from archgen.plugins.ros.launch.launch_parameter_values import FILE_KIND, ParameterFileReader, hand_on_file
 from archgen.plugins.ros.launch.launch_values import (

@@ -27,8 +27,8 @@ from archgen.plugin.importing import (
     read_bounded,
 )
 from archgen.plugin.model import MAX_DIGITS, is_parameter_name
-from archgen.plugins.ros.ros_package.declared_parameters import read_declared_parameters
 from archgen.plugins.ros.ros_package.import_account import ImportAccount
+from archgen.plugins.ros.ros_package.package_import import read_declared_parameters
 
 _MAX_BYTES = 4_000_000
 _ENDINGS = re.compile(r"(?:\.nodl)?\.(?:ya?ml|json|xml)\Z", re.IGNORECASE)

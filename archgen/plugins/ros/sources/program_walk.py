@@ -12,8 +12,7 @@ from typing import Any
 
 from archgen.plugin.importing import Span, WorkBudget
 from archgen.plugins.ros.sources import plain_calls, ros_calls
-from archgen.plugins.ros.sources.program_names import PASSED_THROUGH, Scope
-from archgen.plugins.ros.sources.program_objects import POINTERS, ProgramObjects, choose_overload
+from archgen.plugins.ros.sources.program_names import PASSED_THROUGH, POINTERS, ProgramObjects, Scope, choose_overload
 from archgen.plugins.ros.sources.ros_call_reading import PARAMETER_HELPERS, RosCall
 from archgen.plugins.ros.sources.source_code import Expression, SourceClass, SourceFile, Statement
 from archgen.plugins.ros.sources.source_index import CppCode, SourceIndex

@@ -19,9 +19,8 @@ from archgen.plugin.importing import (
     node_to_data,
 )
 from archgen.plugin.ros import find_name_fault, find_node_name_fault
-from archgen.plugins.ros.launch.launch_actions import LaunchedNode
-from archgen.plugins.ros.launch.launch_import import find_stem
-from archgen.plugins.ros.launch.launch_slices import nest_parameters
+from archgen.plugins.ros.launch.launch_entities import LaunchedNode
+from archgen.plugins.ros.launch.launch_import import find_stem, nest_parameters
 from archgen.plugins.ros.ros_package.import_account import ImportAccount
 from archgen.plugins.ros.sources.walk_values import (
     FoundEndpoint,

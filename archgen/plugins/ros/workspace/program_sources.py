@@ -13,7 +13,7 @@ from archgen.plugin.importing import ForeignFileError, Span, read_bounded
 from archgen.plugins.ros.launch.python_parsing import PythonRefusedError, parse_python
 from archgen.plugins.ros.ros_package.cmake_calls import CMAKE_FILE, CmakeCall, read_cmake_calls
 from archgen.plugins.ros.ros_package.import_account import ImportAccount
-from archgen.plugins.ros.ros_package.package_files import MANIFEST, PackageManifest, read_manifest
+from archgen.plugins.ros.ros_package.package_programs import MANIFEST, PackageManifest, read_manifest
 from archgen.plugins.ros.sources.source_index import CPP_HEADERS, CPP_SOURCES
 
 _MAX_PARTS = 200_000

@@ -16,8 +16,8 @@ from archgen.plugin.importing import (
     make_id,
 )
 from archgen.plugin.model import Endpoint, UseKind, qos_profile
-from archgen.plugins.ros.launch.launch_slices import SliceMaker
-from archgen.plugins.ros.ros_package.package_files import MANIFEST
+from archgen.plugins.ros.launch.launch_import import SliceMaker
+from archgen.plugins.ros.ros_package.package_programs import MANIFEST
 from archgen.plugins.ros.sources.walk_values import settle
 from archgen.plugins.ros.workspace.node_components import WrittenNode
 from archgen.plugins.ros.workspace.program_reading import flatten_parameters

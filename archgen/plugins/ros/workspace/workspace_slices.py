@@ -13,8 +13,8 @@ from typing import Any
 from archgen.plugin import dataclass
 from archgen.plugin.importing import FlowMapping, ForeignFileError, link_slices, make_id, make_unique_id, read_bounded
 from archgen.plugin.model import Architecture
-from archgen.plugins.ros.launch.launch_actions import LaunchedNode
-from archgen.plugins.ros.launch.launch_slices import SliceMaker
+from archgen.plugins.ros.launch.launch_entities import LaunchedNode
+from archgen.plugins.ros.launch.launch_import import SliceMaker
 from archgen.plugins.ros.ros_package.import_account import ImportAccount
 from archgen.plugins.ros.workspace.node_components import LIBRARY, NodeKnowledge, NodeWriter, WrittenNode
 from archgen.plugins.ros.workspace.program_sources import WorkspaceFiles

@@ -10,8 +10,8 @@ from collections.abc import Iterator
 
 from archgen.compare import Comparison
 from archgen.views.graphs.changes.component_changes import draw_component_changes
+from archgen.views.graphs.changes.merged_versions import LARGE_BUDGET, SMALL_BUDGET, PictureBudget
 from archgen.views.graphs.changes.node_changes import draw_node_changes
-from archgen.views.graphs.changes.picture_folding import LARGE_BUDGET, SMALL_BUDGET, PictureBudget
 from archgen.views.picture_shapes import Graph
 
 __all__ = ["LARGE_BUDGET", "SMALL_BUDGET", "PictureBudget", "draw_changes"]

@@ -20,12 +20,14 @@ from archgen.views.graphs.changes.merged_versions import (
     ChangeNotes,
     ConnectionLine,
     MergedEdge,
+    PictureBudget,
     bundle_arrows,
     collect_change_notes,
     describe_changed_flows,
+    fold_neighbours,
+    fold_to_budget,
     merged_edges,
 )
-from archgen.views.graphs.changes.picture_folding import PictureBudget, fold_neighbours, fold_to_budget
 from archgen.views.graphs.graph_folding import add_legend_keys
 from archgen.views.inline_text import count_noun
 from archgen.views.lookup import Lookup, make_lookup

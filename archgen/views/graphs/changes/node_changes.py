@@ -12,8 +12,7 @@ from archgen.model.architecture import Architecture
 from archgen.model.node import Endpoint, Topic
 from archgen.views.changes.change_wording import CHANGE_SIGNS, is_textual
 from archgen.views.graphs import element_boxes
-from archgen.views.graphs.changes.merged_versions import ConnectionLine, bundle_arrows
-from archgen.views.graphs.changes.picture_folding import PictureBudget, fits_budget
+from archgen.views.graphs.changes.merged_versions import ConnectionLine, PictureBudget, bundle_arrows, fits_budget
 from archgen.views.graphs.graph_folding import add_legend_keys
 from archgen.views.lookup import Lookup, make_lookup
 from archgen.views.picture_shapes import Box, ElementChange, Graph

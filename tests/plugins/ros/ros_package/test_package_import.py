@@ -9,7 +9,7 @@ import pytest
 
 from archgen.importers.foreign_import import ForeignFileError, ForeignImport
 from archgen.pipeline import check_project
-from archgen.plugins.ros.ros_package import package_files
+from archgen.plugins.ros.ros_package import package_programs
 from archgen.plugins.ros.ros_package.package_import import read_packages
 from archgen.syntax.yaml_writer import write_yaml
 
@@ -314,10 +314,10 @@ def test_packages_lie_as_deep_as_they_like_and_too_many_files_are_told(
     folder = tmp_path.joinpath("src", *"abcdefgh")
     folder.mkdir(parents=True)
     (folder / "package.xml").write_text("<package><name>deep</name></package>")
-    assert [path.parent.name for path in package_files.find_manifests((tmp_path / "src",))] == ["h"]
-    monkeypatch.setattr(package_files, "_MAX_PARTS", 9)
-    assert package_files.find_manifests((tmp_path / "src",))
+    assert [path.parent.name for path in package_programs.find_manifests((tmp_path / "src",))] == ["h"]
+    monkeypatch.setattr(package_programs, "_MAX_PARTS", 9)
+    assert package_programs.find_manifests((tmp_path / "src",))
     (folder / "one_more").touch()
     with pytest.raises(ForeignFileError, match="more than 9 files and folders") as refused:
-        package_files.find_manifests((tmp_path / "src",))
+        package_programs.find_manifests((tmp_path / "src",))
     assert refused.value.help_line == "give the folders of the packages instead"

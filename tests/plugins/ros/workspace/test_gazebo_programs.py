@@ -8,11 +8,11 @@ import pytest
 
 from archgen.pipeline import check_project
 from archgen.plugin.importing import Span
-from archgen.plugins.ros.launch.launch_actions import LaunchedNode
+from archgen.plugins.ros.launch.launch_entities import LaunchedNode
 from archgen.plugins.ros.launch.launch_files import LaunchFiles
 from archgen.plugins.ros.launch.launch_import import load_noted
 from archgen.plugins.ros.launch.launch_run import LaunchRun
-from archgen.plugins.ros.workspace.gazebo_programs import read_gazebo_program
+from archgen.plugins.ros.workspace.workspace_import import read_gazebo_program
 from tests.cli.conftest import Run
 from tests.plugins.ros.workspace.test_workspace_import import write_workspace
 

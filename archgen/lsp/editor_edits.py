@@ -1,24 +1,65 @@
-"""What an editor can do about a finding: what its help says, all that is certain in a file, or a comment that silences it."""
+"""What an editor can change: what a finding's help says, all that is certain in a file, a comment that silences, or a name,
+as `archgen rename` plans and proves it, in the texts as they stand there.
+"""
 
 from __future__ import annotations
 
 import re
+import string
 from collections.abc import Iterable, Iterator, Sequence
 
+from archgen.checking.reference_index import Element
 from archgen.diagnostics import Diagnostic, SourceTexts, Span
 from archgen.diagnostics.suggested_fixes import TextEdit, apply_edits, suggest_fix
 from archgen.edit.certain_fixes import join_edits
 from archgen.edit.edit_proof import NewElement, find_consequences
 from archgen.edit.element_edit import BYTE_ORDER_MARK, EditRefusedError, FileEdit, insert_element, read_editable
 from archgen.edit.element_place import place_in_section
+from archgen.edit.refactoring.element_rename import plan_rename
+from archgen.edit.refactoring.judged_version import JudgedVersion
 from archgen.frozen import NamedTuple
 from archgen.language.language_tables import PLAIN_SECTIONS
-from archgen.live.edited_project import EditedProject
-from archgen.lsp.rename_request import split_edit
+from archgen.live.warm_project import EditedProject
 from archgen.model.path_resolver import title_from_id
 from archgen.pipeline import index_all_rules
+from archgen.syntax.mended_text import measure_common_lines, split_lines
 from archgen.syntax.yaml_parser import parse_yaml
 from archgen.syntax.yaml_tree import node_to_data
+
+_WORD_SIGNS = f"{string.ascii_letters}{string.digits}_"
+
+
+def plan_edits(project: EditedProject, element: Element, new_name: str) -> tuple[list[TextEdit], tuple[str, ...]]:
+    """Return what gives an element another name, and sentences on what follows. Raise EditRefusedError."""
+    if not project.is_whole:
+        project.check_wholly()
+    for error in project.warm.list_text_errors(project.checked):
+        raise EditRefusedError(f"line {error.span.line} of {error.span.file} cannot be read", "mend it first")
+    version = JudgedVersion(project.checked, project.index, project.warm.cache)
+    refactoring = plan_rename(version, element, new_name)
+    return [edit for file_edit in refactoring.edits for edit in _split_edit(file_edit)], refactoring.notes
+
+
+def _split_edit(file_edit: FileEdit) -> Iterator[TextEdit]:
+    """Yield the edits of single words that make a file's new text; where lines came in, of all between the first and the last."""
+    old_lines, new_lines = (
+        split_lines((content or b"").decode().removeprefix(BYTE_ORDER_MARK))
+        for content in (file_edit.old_content, file_edit.new_content)
+    )
+    if len(old_lines) != len(new_lines):
+        above, below = measure_common_lines(old_lines, new_lines)
+        last = len(old_lines) - below
+        end = (last + 1, 1) if below else (last, len(old_lines[-1]) + 1)
+        yield TextEdit(Span(file_edit.file, above + 1, 1, *end), "".join(new_lines[above : len(new_lines) - below]))
+        return
+    for number, (old, new) in enumerate(zip(old_lines, new_lines, strict=True), 1):
+        if old != new:
+            start, end_length = measure_common_lines(old, new)
+            # Whole words, for people who look at them first.
+            start = len(old[:start].rstrip(_WORD_SIGNS))
+            end_length = len(old[len(old) - end_length :].lstrip(_WORD_SIGNS))
+            span = Span(file_edit.file, number, start + 1, number, len(old) - end_length + 1)
+            yield TextEdit(span, new[start : len(new) - end_length])
 
 
 class QuickFix(NamedTuple):
@@ -98,7 +139,7 @@ def _declare(project: EditedProject, finding: Diagnostic, kind: str) -> Iterator
     except EditRefusedError:
         return
     if not find_consequences(checked, place.file, new_text.removeprefix(BYTE_ORDER_MARK), name).errors:
-        edits = split_edit(FileEdit(place.file, content, new_text.encode(), span.line))
+        edits = _split_edit(FileEdit(place.file, content, new_text.encode(), span.line))
         yield QuickFix(f"declare the {kind.replace('_', ' ')} `{name}` in {place.file}", tuple(edits))
 
 
