@@ -21,6 +21,9 @@ if TYPE_CHECKING:
 
 YAML_ENDINGS = (".yaml", ".yml")
 """How the names of YAML files end, in small letters."""
+_LONGEST_NAME = 255
+"""No file system has a longer name: a pattern with more letters matches none."""
+_CHARACTERS = re.compile(r"\[(!?)([^\]/]+)\]")
 _WILDCARD = re.compile(r"[*?\[]")
 OUTPUT_FOLDER = "archgen-out"
 
@@ -172,19 +175,19 @@ def _name_to_regex(part: str) -> str:
 
 def _split_at_stars(part: str) -> list[str]:
     """Return the expressions of the pieces between the stars of a name; a run of stars counts as one."""
-    pieces, remaining = [""], part
-    while remaining:
-        match = re.match(r"\[(!?)([^\]/]+)\]", remaining)
+    pieces: list[list[str]] = [[]]
+    place, last_bracket = 0, part.rfind("]")
+    while place < len(part):
+        # Behind the last bracket nothing closes a class: to look for it there takes time that grows with the square.
+        match = _CHARACTERS.match(part, place) if place < last_bracket else None
         if match:
-            pieces[-1] += _character_class(match[2], negated=bool(match[1]))
-            remaining = remaining[match.end() :]
-        elif remaining[0] == "*":
-            remaining = remaining.lstrip("*")
-            pieces.append("")
-        else:
-            pieces[-1] += "[^/]" if remaining[0] == "?" else re.escape(remaining[0])
-            remaining = remaining[1:]
-    return pieces
+            pieces[-1].append(_character_class(match[2], negated=bool(match[1])))
+        elif part[place] != "*":
+            pieces[-1].append("[^/]" if part[place] == "?" else re.escape(part[place]))
+        elif part[place - 1 : place] != "*":
+            pieces.append([])
+        place = match.end() if match else place + 1
+    return ["".join(piece) for piece in pieces] if sum(map(len, pieces)) <= _LONGEST_NAME else ["(?!)"]
 
 
 def _character_class(characters: str, *, negated: bool) -> str:

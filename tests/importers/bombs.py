@@ -360,6 +360,8 @@ LANGUAGE_BOMBS = (
     Bomb("aliases of aliases", "check", _project("hints: \n" + "".join(f"  {line}\n" for line in _double_aliases().splitlines()))),
     Bomb("deep flow", "check", _project("groups: " + "{a: " * 100000)),
     Bomb("a marker of conflicts and blanks", "check", _project("<<<<<<< a" + " " * 900000 + "b\n")),
+    Bomb("a pattern of open brackets", "check", _project("sources: ['" + "[" * 300000 + "']\n"), is_quick=True),
+    Bomb("a pattern of stars", "check", _project("sources: ['" + "*a" * 450000 + "']\n")),
     Bomb("long numbers", "check", _project(f"groups: {{a: {{components: {{b: {{outputs: {{o: {{type: T, rate: {'9' * 300000} Hz}}}}, performance: {{wcet: 1e{'9' * 300000} ms}}}}}}}}}}\n")),
     Bomb("instances in instances", "check", lambda: {"archgen.yaml": PROJECT + _types(LEVELS) + f"groups: {{a: {{components: {{x: {{is: t{LEVELS - 1}}}}}}}}}\n"}),
     Bomb("generic types of generic types", "check", lambda: {"archgen.yaml": PROJECT + "types:\n  P: {generic: [A], fields: {a: A, b: A}}\n  T0: std_msgs/msg/String\n" + "".join(f"  T{n}: {{fields: {{a: 'P<T{n - 1}>', b: 'P<T{n - 1}>'}}}}\n" for n in range(1, LEVELS)) + f"groups: {{a: {{components: {{x: {{outputs: {{o: T{LEVELS - 1}}}}}}}}}}}\n"}),

@@ -62,3 +62,9 @@ def test_a_pattern_does_not_match(pattern: str, file: str) -> None:
 def test_no_pattern_takes_exponential_time(pattern: str, file: str) -> None:
     """The expressions before this test took more than a minute for each of these; here a hang is the failure."""
     assert not matches_pattern(pattern, file)
+
+
+def test_no_name_is_longer_than_file_systems_take() -> None:
+    assert matches_pattern("*" + "a" * 255, "a" * 255)
+    assert not matches_pattern("*" + "a" * 256, "a" * 256)
+    assert matches_pattern("[a]" * 255, "a" * 255)
