@@ -48,14 +48,17 @@ def wrap_cell(text: str, width: int, later_width: int | None = None) -> list[str
     if measure_width(text) <= width:
         return [text]
     lines, room = [""], width
+    later_width = width if later_width is None else later_width
     for word in text.split():
-        for number, piece in enumerate(_split_word(word, width if later_width is None else later_width)):
-            joined = f"{lines[-1]} {piece}" if lines[-1] and not number else lines[-1] + piece
-            if lines[-1] and measure_width(joined) > room:
+        for number, piece in enumerate(_split_word(word, later_width)):
+            gap = " " if lines[-1] and not number else ""
+            needed = len(gap) + measure_width(piece)
+            if lines[-1] and needed > room:
                 lines.append(piece)
-                room = width if later_width is None else later_width
+                room = later_width - measure_width(piece)
             else:
-                lines[-1] = joined
+                lines[-1] += gap + piece
+                room -= needed
     return lines
 
 
@@ -65,12 +68,13 @@ def _split_word(word: str, width: int) -> Iterator[str]:
         yield word
         return
     for piece in _PIECE_PATTERN.findall(word):
-        part = ""
+        part, room = "", width
         for character in piece:
-            if measure_width(part + character) > width:
+            needed = measure_width(character)
+            if needed > room:
                 yield part
-                part = ""
-            part += character
+                part, room = "", width
+            part, room = part + character, room - needed
         if part:
             yield part
 
@@ -152,7 +156,7 @@ def _shrink_columns(widths: list[int], room: int) -> list[int]:
     """Return widths that fit into the room: the widest columns give first, down to one common width."""
     if sum(widths) <= room:
         return widths
-    limit = max((each for each in range(1, max(widths) + 1) if sum(min(w, each) for w in widths) <= room), default=1)
+    limit = max((each for each in range(1, min(max(widths), room) + 1) if sum(min(w, each) for w in widths) <= room), default=1)
     spare = room - sum(min(width, limit) for width in widths)
     shrunk = []
     for width in widths:

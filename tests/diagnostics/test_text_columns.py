@@ -7,6 +7,8 @@ from collections import Counter
 
 import pytest
 
+from archgen.diagnostics import text_columns
+from archgen.diagnostics.safe_text import measure_width
 from archgen.diagnostics.text_columns import align_rows, find_width, format_table, wrap_line
 
 ROWS = [("id", "what"), ("perception.object_recognition", "finds objects on the table")]
@@ -89,3 +91,16 @@ def test_columns_says_how_wide_a_pipe_is_taken_to_be(
 ) -> None:
     monkeypatch.setenv("COLUMNS", columns)
     assert find_width(io.StringIO()) == width
+
+
+def test_a_long_word_is_measured_once_however_wide_the_terminal_is(monkeypatch: pytest.MonkeyPatch) -> None:
+    measured: list[int] = []
+    monkeypatch.setattr(text_columns, "measure_width", lambda text: measured.append(len(text)) or measure_width(text))
+    lines = wrap_line("漢" * 5000 + "." * 5000, 100)
+    assert "".join(lines).replace(" ", "") == "漢" * 5000 + "." * 5000
+    assert all(measure_width(line) <= 100 for line in lines)
+    assert sum(measured) <= 10 * 10_000
+
+
+def test_a_column_of_a_long_cell_gives_in_at_once() -> None:
+    assert text_columns._shrink_columns([10**12, 1], 40) == [39, 1]  # noqa: SLF001 - it must not try each width
