@@ -156,7 +156,9 @@ def _shrink_columns(widths: list[int], room: int) -> list[int]:
     """Return widths that fit into the room: the widest columns give first, down to one common width."""
     if sum(widths) <= room:
         return widths
-    limit = max((each for each in range(1, min(max(widths), room) + 1) if sum(min(w, each) for w in widths) <= room), default=1)
+    limit = max(
+        (each for each in range(1, min(max(widths), room) + 1) if sum(min(w, each) for w in widths) <= room), default=1
+    )
     spare = room - sum(min(width, limit) for width in widths)
     shrunk = []
     for width in widths:

@@ -95,7 +95,12 @@ def test_columns_says_how_wide_a_pipe_is_taken_to_be(
 
 def test_a_long_word_is_measured_once_however_wide_the_terminal_is(monkeypatch: pytest.MonkeyPatch) -> None:
     measured: list[int] = []
-    monkeypatch.setattr(text_columns, "measure_width", lambda text: measured.append(len(text)) or measure_width(text))
+
+    def measure(text: str) -> int:
+        measured.append(len(text))
+        return measure_width(text)
+
+    monkeypatch.setattr(text_columns, "measure_width", measure)
     lines = wrap_line("漢" * 5000 + "." * 5000, 100)
     assert "".join(lines).replace(" ", "") == "漢" * 5000 + "." * 5000
     assert all(measure_width(line) <= 100 for line in lines)

@@ -6,6 +6,7 @@ from collections.abc import Mapping
 from typing import Any
 from urllib.parse import unquote
 
+from archgen.plugin.model import DIGITAL, MEDIUM_NAMES
 from archgen.plugins.aadl.aadl_tree import AadlName, Path
 from archgen.plugins.aadl.property_values import PropertyScope, read_count, read_first_text, read_texts
 
@@ -59,4 +60,8 @@ def read_node_words(scope: PropertyScope) -> dict[str, Any]:
 
 def read_port_words(scope: PropertyScope, path: Path) -> dict[str, Any]:
     """Return what archgen says of a port."""
-    return read_own_words(scope, path, _PORT_KEYS)
+    words, said = read_own_words(scope, path, _PORT_KEYS), scope.find(path, "archgen::medium")
+    if said and words.get("medium", DIGITAL) not in {*MEDIUM_NAMES, DIGITAL}:
+        del words["medium"]
+        scope.resolver.notes.add_contradiction("Medium", "this is no medium", said.span)
+    return words

@@ -121,7 +121,8 @@ class PortMapper:
             is_input = word in {"in", "requires"}
             own_id = find_own_text(mapped.scope, path, "id")
             # Features with one id of archgen's are one input, which reads several types.
-            port_id = own_id or make_unique_id(make_id("_".join((*prefix, written.name)), "port"), used[is_input])
+            wanted = make_id(own_id or "_".join((*prefix, written.name)), "port")
+            port_id = wanted if own_id else make_unique_id(wanted, used[is_input])
             used[is_input].add(port_id)
             type_name = self._types.name_use(port.use, "srv" if is_call else "msg")
             added.append(

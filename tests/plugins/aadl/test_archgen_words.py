@@ -150,3 +150,18 @@ def test_what_no_field_and_no_thread_can_have_is_not_taken(tmp_path: Path) -> No
     assert "15 z" not in str(imported.slices)
     told = [note for note in tell_notes(imported) if "none of its type" in note or "is no rate" in note]
     assert len(told) == text.count("15 z") + 1
+
+
+def test_an_id_that_is_none_is_made_one(tmp_path: Path) -> None:
+    port = 'x: out data port {archgen::Id => "No id: {a}";};'
+    imported = import_package(tmp_path, f"process p features {port} end p;")
+    assert [*merge_slices(imported)["component_types"]["p"]["outputs"]] == ["no_id_a"]
+
+
+def test_a_medium_that_is_none_is_not_taken(tmp_path: Path) -> None:
+    port = 'x: out data port {archgen::Medium => "smoke";}; y: out data port {archgen::Medium => "can";};'
+    imported = import_package(tmp_path, f"process p features {port} end p;")
+    outputs = merge_slices(imported)["component_types"]["p"]["outputs"]
+    assert "medium" not in str(outputs["x"])
+    assert outputs["y"]["medium"] == "can"
+    assert any("this is no medium" in note for note in tell_notes(imported))
