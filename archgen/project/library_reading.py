@@ -256,20 +256,13 @@ def load_package_types(distro: str | None, packages: frozenset[str]) -> Mapping[
     """Return those of them that are of some packages. The rest of the files is not parsed: their places are others."""
 
     def parse_part(file: str) -> Iterable[MappingEntry]:
-        head, type_texts = _split_shipped_file(file)
-        kept = [each for each, named in type_texts if not packages.isdisjoint(named)]
+        head, *type_texts = _TYPE_START.split(_read_shipped_text(file))
+        kept = [each for each in type_texts if not packages.isdisjoint(_NAMED_PACKAGE.findall(each))]
         if any(": *" in each for each in kept):  # what they share with other types stands at one of these
-            kept = [each for each, _ in type_texts if each in kept or ": &" in each]
+            kept = [each for each in type_texts if each in kept or ": &" in each]
         return _parse_types(file, "".join([head, *kept])) if kept else ()
 
     return _gather_types(distro, packages & list_shipped_packages(distro), parse_part)
-
-
-@cache
-def _split_shipped_file(file: str) -> tuple[str, list[tuple[str, list[str]]]]:
-    """Return what stands above the types of a file, and the text of each with the packages that it names."""
-    head, *texts = _TYPE_START.split(_read_shipped_text(file))
-    return head, [(each, _NAMED_PACKAGE.findall(each)) for each in texts]
 
 
 def _gather_types(
