@@ -262,6 +262,7 @@ REQIF = "import reqif m.reqif"
 MODEL_BOMBS = (
     Bomb("a property text of 30 MB", AADL, lambda: _aadl('system s properties a => "' + "x" * 30000000 + '"; end s;')),
     Bomb("an open property text", AADL, lambda: _aadl('system s properties a => "' + 'x""\\\\' * 200000)),
+    Bomb("quotes that close no text", AADL, lambda: {"m.aadl": "package p\npublic\n" + '\\"' * 300000 + "\nend p;\n"}, is_quick=True),
     Bomb("many features", AADL, lambda: _aadl("system s features " + "".join(f"f{n}: in data port; " for n in range(40000)) + "end s;")),
     Bomb("classifiers that extend one another", AADL, lambda: _aadl("system s0 features f0: in data port; end s0;\n" + "".join(f"system s{n} extends s{n - 1} features f{n}: in data port; end s{n};\n" for n in range(1, 8000)))),
     Bomb("refinements of refinements", AADL, lambda: _aadl("data d end d;\nsystem s0 features f: in data port d; end s0;\n" + "".join(f"system s{n} extends s{n - 1} features f: refined to in data port d; end s{n};\n" for n in range(1, 8000)))),
