@@ -262,6 +262,7 @@ REQIF = "import reqif m.reqif"
 MODEL_BOMBS = (
     Bomb("a property text of 30 MB", AADL, lambda: _aadl('system s properties a => "' + "x" * 30000000 + '"; end s;')),
     Bomb("an open property text", AADL, lambda: _aadl('system s properties a => "' + 'x""\\\\' * 200000)),
+    Bomb("quotes that close no text", AADL, lambda: {"m.aadl": "package p\npublic\n" + '\\"' * 300000 + "\nend p;\n"}, is_quick=True),
     Bomb("many features", AADL, lambda: _aadl("system s features " + "".join(f"f{n}: in data port; " for n in range(40000)) + "end s;")),
     Bomb("classifiers that extend one another", AADL, lambda: _aadl("system s0 features f0: in data port; end s0;\n" + "".join(f"system s{n} extends s{n - 1} features f{n}: in data port; end s{n};\n" for n in range(1, 8000)))),
     Bomb("refinements of refinements", AADL, lambda: _aadl("data d end d;\nsystem s0 features f: in data port d; end s0;\n" + "".join(f"system s{n} extends s{n - 1} features f: refined to in data port d; end s{n};\n" for n in range(1, 8000)))),
@@ -312,6 +313,7 @@ TEXT_BOMBS = (
     Bomb("a log of many topics", "timing --measured a.log", lambda: {"archgen.yaml": RECORDED, "a.log": "".join(f"$ ros2 topic hz /t{n}\naverage rate: {n}.0\n" for n in range(20000))}),
     Bomb("a trace of open callbacks", "timing --measured a.txt", lambda: {"archgen.yaml": RECORDED, "a.txt": "".join(f'[12:00:{n % 60:02d}.{n:09d}] (+0.0) robot ros2:callback_start: {{ cpu_id = 0 }}, {{ vpid = {n}, vtid = {n}, procname = "p" }}, {{ callback = 0x{n:X}, is_intra_process = 0 }}\n' for n in range(8000))}),
     Bomb("a bag's description with anchors", "timing --measured metadata.yaml", lambda: {"archgen.yaml": RECORDED, "metadata.yaml": "rosbag2_bagfile_information:\n" + "".join(f"  {line}\n" for line in _double_aliases().splitlines())}),
+    Bomb("a cell that is a long path", "init new --from t.csv --yes", lambda: {"t.csv": "Group,Component,Inputs\na,b," + "a/" * 400000 + "\n"}),
     Bomb("a wide table", "init new --from t.csv --yes", lambda: {"t.csv": "Group,Component,Input" + ",x" * 300000 + "\na,b,c" + "," * 300000}),
     Bomb("a long table", "init new --from t.csv --yes", lambda: {"t.csv": "Group,Component,Input,From\n" + "".join(f"a,b{n},i,b{n + 1}.o\n" for n in range(40000))}),
     Bomb("a cell of many ports", "init new --from t.csv --yes", lambda: {"t.csv": 'Group,Component,Inputs\na,b,"' + "; ".join(f"p{n} (T) from c{n}.o" for n in range(25000)) + '"\n'}),

@@ -28,7 +28,7 @@ _TOKEN = re.compile(
     | (?P<name>[^\W\d]\w*)
     | (?P<text>"(?:[^"\\]++|""|\\.)*+")
     | (?P<sign>\+=>|=>|<->|->|-\[|\]->|::|\.\.|\*\*|[-+*;:,.(){}\[\]^@<>/])
-    | (?P<stray>.)
+    | (?P<stray>"(?:[^"\\]++|""|\\.)*+|.)  # a text without an end is one, too: else each quote in it is tried up to the end
     """,
     re.VERBOSE | re.DOTALL,
 )

@@ -6,6 +6,7 @@ import re
 from collections.abc import Iterator
 from collections.abc import Set as AbstractSet
 from dataclasses import dataclass, field
+from itertools import zip_longest
 from typing import Any
 
 from archgen.plugin.findings import Diagnostic, Label, Severity
@@ -195,14 +196,14 @@ class ImportedProject:
     def resolve_path(self, text: str) -> tuple[ImportedComponent, str] | None:
         """Resolve `group.component`, `Group / Component` or `component.output` to a component and a port's name."""
         words = [word for word in _PATH_SEPARATOR.split(text) if word]
-        for first in range(len(words)):
-            group, inner_words = self._find_group(words[first]), words[first + 1 :]
-            if group and inner_words and (component := self._find_in_group(group, inner_words[0])):
-                return component, " ".join(inner_words[1:])
-            namesakes = self.find_components(words[first])
-            # Only the first word may stand for a component without its group: `robot.arm` is not the component `arm`.
+        # Only the first word may stand for a component without its group: `robot.arm` is not the component `arm`.
+        namesakes = self.find_components(words[0]) if words else []
+        for first, (outer, inner) in enumerate(zip_longest(words, words[1:])):
+            group = self._find_group(outer)
+            if group and inner and (component := self._find_in_group(group, inner)):
+                return component, " ".join(words[first + 2 :])
             if len(namesakes) == 1 and first == 0:
-                return namesakes[0], " ".join(inner_words)
+                return namesakes[0], " ".join(words[1:])
         return None
 
     def suggest_component(self, name: str) -> str:
