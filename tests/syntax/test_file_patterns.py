@@ -23,6 +23,8 @@ from archgen.syntax.file_patterns import matches_pattern
         ("[ab]?.yaml", "bz.yaml"),
         ("[!a].yaml", "b.yaml"),
         ("[!b-a].yaml", "b.yaml"),
+        ("[--0].yaml", "0.yaml"),
+        ("[+--].yaml", "-.yaml"),
     ],
 )
 def test_a_pattern_matches(pattern: str, file: str) -> None:
@@ -42,6 +44,7 @@ def test_a_pattern_matches(pattern: str, file: str) -> None:
         ("[!a].yaml", "a.yaml"),
         ("[ab]*", "ca"),
         ("[b-a].yaml", "b.yaml"),
+        ("[a--b].yaml", "c.yaml"),
         ("../*", "../a"),
         ("/*", "/a"),
     ],
