@@ -206,8 +206,8 @@ REFINEMENTS = (
     Refinement(
         "cores alone, where resources come in turn",
         "load.joined_resources:find_joined_resources",
-        "if use_times := _list_turns(system):",
-        "if (use_times := _list_turns(system)) and False:",
+        "if use_times := {name: time for name, time in find_turn_times(system).items() if time is not None}:",
+        "if False and (use_times := {}):",
     ),
     Refinement(
         "waits for resources use by use",

@@ -17,7 +17,7 @@ WHOLE_NUMBERS = frozenset(
             "archgen/plugins/recordings/bag_observation.py",
             "sum((each.stat().st_size for each in _list_regular_files(path)))",
         ),
-        ("archgen/views/timing/element_timing.py", "sum(times.values())"),
+        ("archgen/views/timing/timing_tables.py", "sum(times.values())"),
         ("archgen/emit/graphviz/box_styles.py", "sum((width + gap for width, _ in cells))"),
         ("archgen/views/search/entry_ranking.py", "sum(ranks)"),
         ("archgen/views/graphs/group_columns.py", "sum([place[each] for each in near])"),

@@ -14,11 +14,11 @@ from archgen.git.object_reader import MergeFolder, PathConflict, open_merge_fold
 from archgen.git.repository_lookup import look_up_tree
 from archgen.merge.branch_results import BranchJudges, BranchMerge, FileConflict, FollowedVersion, JointBreaks
 from archgen.merge.change_transfer import read_normal_tree
+from archgen.merge.double_renames import find_double_renames
 from archgen.merge.file_merge import merge_contents
 from archgen.merge.tree_merge import (
     EMPTY_MAPPING,
     MergeConflictError,
-    find_double_renames,
     follow_renames,
     merge_values,
     read_merged_value,

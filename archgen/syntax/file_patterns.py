@@ -193,7 +193,9 @@ def _split_at_stars(part: str) -> list[str]:
 def _character_class(characters: str, *, negated: bool) -> str:
     # `[!a]` must not match a slash; re.escape also escapes `-`, which means a range here as it does in a shell.
     # Two of them are the end of a range and a `-`, or a range that begins with one; Python would warn of what they may mean one day.
-    plain = re.sub(r"^--|--", lambda found: r"-\-" if found.start() else r"\--", re.escape(characters).replace(r"\-", "-"))
+    plain = re.sub(
+        r"^--|--", lambda found: r"-\-" if found.start() else r"\--", re.escape(characters).replace(r"\-", "-")
+    )
     character_class = f"[{'^/' if negated else ''}{plain}]"
     try:
         re.compile(character_class)
