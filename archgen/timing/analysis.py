@@ -252,7 +252,7 @@ class ChainTerm:
     why: str
     at: Span = field(default=NO_SPAN, compare=False, repr=False)
     counted_at: str = ""
-    """The activity at which the work of this one is counted, as far as `response` does not say more; empty: at this one."""
+    """The activity at which the time of this one is counted, as far as `response` does not say more; empty: at this one."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -336,7 +336,7 @@ class _CodeReader:
         if isinstance(expression, ast.Call):
             return self._trace_call(expression, roots)
         if isinstance(expression, _HOLDING):
-            traces = {self._trace_fields(each, roots) for each in _list_held(expression)}
+            traces = dict.fromkeys(self._trace_fields(each, roots) for each in _list_held(expression))
             return next(iter(traces)) if len(traces) == 1 else None
         if isinstance(expression, ast.Attribute) and _is_kept(expression):
             return self._kept.get(expression.attr)

@@ -188,10 +188,11 @@ def build_terms(network: CostNetwork, path: CostedPath) -> tuple[ChainTerm, ...]
     counting = name
     for arc in (network.arcs[arc_index] for arc_index in path.arcs):
         step_delay, response, why = steps.sampling_delay(arc), network.step_response(arc), ""
+        own_time = steps.response_value(arc.target).value
         if not steps.continues_run(arc, network.runs):
             counting = arc.target
-        elif response.value is not None:
-            why = f", {'this much more than' if response.value else 'its work'} counted at {counting}"
+        elif response.value is not None and (own_time is None or response.value < own_time):
+            why = f", {'the rest of its time' if response.value else 'its time'} counted at {counting}"
         chain_terms.append(
             ChainTerm(
                 arc.target,

@@ -188,7 +188,7 @@ def make_chain_share_table(lookup: Lookup, element_id: str, title: str, activiti
         (
             inline_text.to_inlines(Text(lookup.architecture.chains[result.id].title, ref=f"chain:{result.id}")),
             chain_status.chain_meter(result),
-            *_write_shares(result, first, sums),
+            *_write_shares(lookup.timing, result, first, sums),
             timing_tables.duration_cell(result.bound),
             timing_tables.deadline_cell(result),
             chain_status.chain_chip(result),
@@ -209,11 +209,13 @@ def make_chain_share_table(lookup: Lookup, element_id: str, title: str, activiti
     return table if rows else None
 
 
-def _write_shares(result: ChainResult, first: ChainTerm, sums: Sequence[Fraction]) -> Iterator[Inlines]:
+def _write_shares(
+    timing: TimingLookup, result: ChainResult, first: ChainTerm, sums: Sequence[Fraction]
+) -> Iterator[Inlines]:
     """Yield the cells of the time before, in and after an element. Of a chain with gaps this is what is known."""
     for index, known_sum in enumerate(sums):
         if index == 1 and not known_sum and first.counted_at:
-            yield (Text("with ", muted=True), Text(first.counted_at, code=True))
+            yield (Text("with ", muted=True), *timing_tables.activity_link(timing, first.counted_at))
         else:
             yield timing_tables.duration_cell(TimingValue(known_sum, result.bound.complete))
 
@@ -316,7 +318,7 @@ def list_flow_lines(lookup: Lookup, element: Node | Component) -> Iterator[tuple
 def _write_chain(result: ChainResult, first: ChainTerm, own_time: Fraction) -> str:
     """Write how a chain stands, and how much of it passes in an element."""
     own, whole = TimingValue(own_time, result.bound.complete), result.bound
-    share = f"; its work counted at {first.counted_at}" if first.counted_at else ""
+    share = f"; its time counted at {first.counted_at}" if first.counted_at else ""
     if own_time:
         share = f"; {value_format.display_duration(own)} of {value_format.display_duration(whole)} here"
     return f"{result.id}: {_read(chain_status.chain_chip(result))}{share}"
