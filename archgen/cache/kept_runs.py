@@ -64,29 +64,9 @@ Folders may be made and removed: what is made in them is opened to be written.
 """
 _FACTS_OF_FILES = 7
 """So much is said of a file before the date of its last change."""
-_GIT_WORDS = frozenset(
-    {
-        *(
-            "log",
-            "ls-tree",
-            "rev-parse",
-            "HEAD",
-            "-1",
-            "-r",
-            "-z",
-            "--format=%h",
-            "--format=%cs",
-            "--no-show-signature",
-        ),
-        *(
-            "--verify",
-            "--quiet",
-            "--is-bare-repository",
-            "--is-shallow-repository",
-            "--is-inside-git-dir",
-            "--show-prefix",
-        ),
-    }
+_GIT_WORD = re.compile(
+    r"log|ls-tree|rev-parse|HEAD|-[1rz]|--format=%(?:h|cs)|--(?:no-show-signature|verify|quiet|show-prefix)"
+    r"|--is-(?:bare-repository|shallow-repository|inside-git-dir)"
 )
 """What git is asked again in a word that may be an option. A record that asks for anything else is not followed."""
 _SAFE_TEXT = re.compile(r"(?:[^\x00-\x08\x0b-\x1f\x7f-\x9f]|\x1b\[[0-9;]*+m)*+")
@@ -295,7 +275,7 @@ def _is_writing(how: int | str = "r", *, flags: int = 0, mode: str = "r", **_: o
 
 def _are_plain(words: Sequence[str]) -> bool:
     """Whether words for git ask for nothing but what a project's files are in its commits."""
-    return _GIT_WORDS.issuperset(takewhile(lambda word: word not in {"--", "--end-of-options"}, words))
+    return all(map(_GIT_WORD.fullmatch, takewhile(lambda word: word not in {"--", "--end-of-options"}, words)))
 
 
 def _is_safe(said: Sequence[tuple[int, str]]) -> bool:
