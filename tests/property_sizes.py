@@ -67,9 +67,9 @@ def mark_further_samples(samples: Iterable[object], count: int | None = None) ->
 
 def mark_slow_samples(samples: Iterable[object], count: int) -> list[pytest.ParameterSet]:
     """Mark samples of which `make test-all` tries the first `count`, and `make properties` the others."""
-    values = [sample if isinstance(sample, tuple) else (sample,) for sample in samples]
-    further = [pytest.param(*each, marks=pytest.mark.hypothesis) for each in values[count:]]
-    return [*(pytest.param(*each, marks=pytest.mark.slow) for each in values[:count]), *(further if DRAWS_ANEW else ())]
+    values = list(samples)
+    further = [_mark_sample(each, pytest.mark.hypothesis) for each in values[count:]]
+    return [*(_mark_sample(each, pytest.mark.slow) for each in values[:count]), *(further if DRAWS_ANEW else ())]
 
 
 def try_some(samples: Iterable[object], quick_count: int) -> list[pytest.ParameterSet]:
@@ -79,11 +79,10 @@ def try_some(samples: Iterable[object], quick_count: int) -> list[pytest.Paramet
     """
     values = list(samples)
     quick = {index * len(values) // quick_count for index in range(quick_count)}
-    return [_make_parameters(value, is_slow=index not in quick) for index, value in enumerate(values)]
+    return [_mark_sample(each, *(() if index in quick else (pytest.mark.slow,))) for index, each in enumerate(values)]
 
 
-def _make_parameters(sample: object, *, is_slow: bool) -> pytest.ParameterSet:
-    marks = [pytest.mark.slow] if is_slow else []
+def _mark_sample(sample: object, *marks: pytest.MarkDecorator) -> pytest.ParameterSet:
     if isinstance(sample, pytest.ParameterSet):
         return pytest.param(*sample.values, marks=[*sample.marks, *marks], id=sample.id)
     return pytest.param(*(sample if isinstance(sample, tuple) else (sample,)), marks=marks)
