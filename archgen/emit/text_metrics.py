@@ -9,6 +9,7 @@ from __future__ import annotations
 import math
 import re
 import unicodedata
+from collections.abc import Sequence
 from functools import lru_cache
 
 from archgen.frozen import dataclass
@@ -102,6 +103,45 @@ def measure_code(word: str) -> float:
 def split_name(name: str) -> list[str]:
     """Return the parts of a name that may stand on different lines: it breaks behind underscores, points and slashes."""
     return _NAME_PART.findall(name) or [name]
+
+
+def share_width(
+    words: Sequence[float], lines: Sequence[float], parts: Sequence[float], weights: Sequence[float], total: float
+) -> list[float]:
+    """Return the width of each column of a table, by its longest word, its longest line and its longest part of a name.
+
+    Each has the room of its longest line where that is less than its share by weight, and what is left goes to the others;
+    none has less than its longest word, as far as there is room.
+    """
+    least = list(words)
+    if math.fsum(least) >= total:
+        # Names give way first: they may be broken, other words may not.
+        excess, give = math.fsum(least) - total, [max(a - b, 0) for a, b in zip(least, parts, strict=True)]
+        share = min(excess / math.fsum(give), 1) if any(give) else 0
+        least = [width - room * share for width, room in zip(least, give, strict=True)]
+        return [width * total / math.fsum(least) for width in least]
+    lines = [max(line, word) for line, word in zip(lines, least, strict=True)]
+    if math.fsum(lines) <= total:
+        return [line * total / math.fsum(lines) for line in lines]
+    # A weight of 0 or less is no mistake to stop at: such a column gets what its words need.
+    return _fill_widths(lines, least, [max(weight, 0.01) for weight in weights], total)
+
+
+def _fill_widths(lines: Sequence[float], least: Sequence[float], weights: Sequence[float], total: float) -> list[float]:
+    """Give columns their longest lines, or their longest words, as long as the others' shares by weight allow no more."""
+    widths: dict[int, float] = {}
+    open_columns = list(range(len(lines)))
+    while open_columns:
+        room = total - math.fsum(widths.values())
+        weight = math.fsum(weights[index] for index in open_columns)
+        shares = {index: room * weights[index] / weight for index in open_columns}
+        # Who needs more than its share comes first: what it takes, the others lack.
+        settled = {index: least[index] for index in open_columns if least[index] > shares[index]} or {
+            index: lines[index] for index in open_columns if lines[index] <= shares[index]
+        }
+        widths |= settled or shares
+        open_columns = [index for index in open_columns if index not in (settled or shares)]
+    return [widths[index] for index in range(len(lines))]
 
 
 def _measure_character(code: int) -> int:

@@ -137,13 +137,21 @@ class ProductInputs:
         """The contents of the slides."""
         from archgen.views.report.slide_deck import make_slide_deck
 
-        return make_slide_deck(self.views.lookup, self.views.edition)
+        return make_slide_deck(self.views.lookup, replace(self.views.edition, drawings=self._slide_choice))
+
+    @cached_property
+    def _slide_choice(self) -> Mapping[str, Drawing]:
+        """All pictures, that of the hosts as slides show it."""
+        from archgen.views.graphs.host_rack import draw_slide_rack
+
+        drawings = self.views.drawings
+        return {**drawings, "hosts": draw_slide_rack(self.views.lookup)} if "hosts" in drawings else drawings
 
     @cached_property
     def slide_drawings(self) -> Mapping[str, Drawing]:
         """The pictures that the slides show, by id."""
         shown_ids = _list_shown_pictures(self.slide_deck)
-        return {name: each for name, each in self.views.drawings.items() if each.id in shown_ids}
+        return {each.id: each for each in self._slide_choice.values() if each.id in shown_ids}
 
     @cached_property
     def pages(self) -> tuple[Page, ...]:

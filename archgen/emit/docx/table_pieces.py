@@ -13,7 +13,15 @@ from archgen.emit.docx.docx_writer import ColumnMeasures, DocxWriter
 from archgen.emit.docx.page_flow import FlowPiece, PaperSheet
 from archgen.emit.docx.text_pieces import MUTED_SETTING, RunSetting, format_runs, join_text, measure_bar
 from archgen.emit.docx.word_xml import escape_text, format_paragraph, format_run, points_to_twips
-from archgen.emit.text_metrics import TextFace, join_hard_blanks, measure_code, measure_word, measure_words, split_name
+from archgen.emit.text_metrics import (
+    TextFace,
+    join_hard_blanks,
+    measure_code,
+    measure_word,
+    measure_words,
+    share_width,
+    split_name,
+)
 from archgen.frozen import dataclass, replace
 from archgen.views.shapes import Column, Facts, Inlines, Table
 
@@ -72,42 +80,10 @@ def choose_table_sheet(writer: DocxWriter, shape: Table) -> tuple[PaperSheet | N
 
 
 def _share_width(writer: DocxWriter, content: TableContent, total: float, styles: TableStyles) -> list[float]:
-    """Return the width of each column in points.
-
-    Each has the room of its longest line where that is less than its share by weight, and what is left goes to the others;
-    none has less than its longest word, as far as there is room.
-    """
+    """Return the width of each column in points."""
     words, lines, parts = _measure_columns(writer, content, styles)
-    least = [min(width, total * _MAX_WORD_SHARE) for width in words]
-    if math.fsum(least) >= total:
-        # Names give way first: they may be broken, other words may not.
-        excess, give = math.fsum(least) - total, [max(a - b, 0) for a, b in zip(least, parts, strict=True)]
-        share = min(excess / math.fsum(give), 1) if any(give) else 0
-        least = [width - room * share for width, room in zip(least, give, strict=True)]
-        return [width * total / math.fsum(least) for width in least]
-    lines = [max(line, word) for line, word in zip(lines, least, strict=True)]
-    if math.fsum(lines) <= total:
-        return [line * total / math.fsum(lines) for line in lines]
-    # A weight of 0 or less is no mistake to stop at: such a column gets what its words need.
-    weights = [max(column.weight, 0.01) for column in content.columns]
-    return _fill_widths(lines, least, weights, total)
-
-
-def _fill_widths(lines: Sequence[float], least: Sequence[float], weights: Sequence[float], total: float) -> list[float]:
-    """Give columns their longest lines, or their longest words, as long as the others' shares by weight allow no more."""
-    widths: dict[int, float] = {}
-    open_columns = list(range(len(lines)))
-    while open_columns:
-        room = total - math.fsum(widths.values())
-        weight = math.fsum(weights[index] for index in open_columns)
-        shares = {index: room * weights[index] / weight for index in open_columns}
-        # Who needs more than its share comes first: what it takes, the others lack.
-        settled = {index: least[index] for index in open_columns if least[index] > shares[index]} or {
-            index: lines[index] for index in open_columns if lines[index] <= shares[index]
-        }
-        widths |= settled or shares
-        open_columns = [index for index in open_columns if index not in (settled or shares)]
-    return [widths[index] for index in range(len(lines))]
+    weights = [column.weight for column in content.columns]
+    return share_width([min(width, total * _MAX_WORD_SHARE) for width in words], lines, parts, weights, total)
 
 
 def _measure_columns(writer: DocxWriter, content: TableContent, styles: TableStyles) -> ColumnMeasures:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import io
 import re
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from datetime import datetime
 from typing import Any
 
@@ -24,6 +24,7 @@ from archgen.emit.picture import Picture
 from archgen.emit.pptx.slide_flow import (
     BODY_TOP,
     FIGURE_SCALE,
+    GAP,
     MARGIN,
     SIDE_PADDING,
     SLIDE_HEIGHT,
@@ -37,6 +38,7 @@ from archgen.emit.pptx.slide_flow import (
 )
 from archgen.emit.state_colours import CHANGE_COLOURS, MUTED_COLOUR, STATUS_COLOURS
 from archgen.emit.template_package import TemplateError, parse_part, read_content_types, unpack_template, zip_parts
+from archgen.emit.text_metrics import CODE_SCALE
 from archgen.frozen import dataclass
 from archgen.views.inline_text import cut_text
 from archgen.views.shapes import Inlines, Outline, Text
@@ -47,7 +49,7 @@ _INK, _LINE, _HEADING_FILL, _ACCENT = "1A2129", "C9D1D8", "EEF2F5", "1F6FB5"
 _TITLE_SIZE, _LONG_TITLE_SIZE, _COVER_SIZE = 26, 18, 40
 _LONG_TITLE, _MAX_TITLE, _MAX_COVER_TITLE = 58, 170, 120
 _MAX_TITLE_LINES = 2
-_FOOTER_SIZE = 9
+_FOOTER_SIZE = 10
 _MAX_FACT = 150
 _CODE_FONT = "Consolas"
 _PLAIN_TABLE = "{2D5ABB26-0587-4C30-8999-92F81FD0307C}"
@@ -280,7 +282,7 @@ def _write_cell(  # noqa: PLR0913 - how it is set
 ) -> None:
     cell.margin_left = cell.margin_right = _measure(SIDE_PADDING)
     cell.margin_top = cell.margin_bottom = _measure(3)
-    cell.vertical_anchor = MSO_ANCHOR.TOP
+    cell.vertical_anchor = MSO_ANCHOR.BOTTOM if is_heading else MSO_ANCHOR.TOP
     _write_paragraphs(cell.text_frame, (runs,), size, strong_scale=FIGURE_SCALE if is_figure else 1.0, colours=colours)
     properties = cell._tc.get_or_add_tcPr()  # noqa: SLF001 - python-pptx has no lines of cells
     line = etree.SubElement(properties, qn("a:lnB"), {"w": "6350"})
@@ -293,7 +295,7 @@ def _write_cell(  # noqa: PLR0913 - how it is set
 
 def _write_paragraphs(
     frame: Any,  # noqa: ANN401 - as python-pptx gives it
-    paragraphs: Iterable[Inlines],
+    paragraphs: Sequence[Inlines],
     size: float,
     *,
     strong_scale: float = 1.0,
@@ -303,13 +305,14 @@ def _write_paragraphs(
     for number, inlines in enumerate(paragraphs):
         paragraph = frame.paragraphs[0] if number == 0 else frame.add_paragraph()
         paragraph.alignment = PP_ALIGN.LEFT
+        paragraph.space_after = Pt(GAP if number + 1 < len(paragraphs) else 0)
         for text in inlines:
             if text.line_break:
                 paragraph.add_line_break()
             run = paragraph.add_run()
             run.text = _clean(write_comparisons(text.text))
             font = run.font
-            font.size = Pt(round(size * (strong_scale if text.strong else 1), 1))
+            font.size = Pt(round(size * (strong_scale if text.strong else CODE_SCALE if text.code else 1), 1))
             font.bold = text.strong or text.status in STATUS_COLOURS or None
             font.italic = text.emphasis or None
             colour = colours.choose_colour(text)

@@ -9,7 +9,14 @@ from collections.abc import Iterator, Mapping, Sequence
 from math import fsum
 
 from archgen.emit.picture import Picture
-from archgen.emit.text_metrics import BOLD_FACTOR, count_lines
+from archgen.emit.text_metrics import (
+    BOLD_FACTOR,
+    count_lines,
+    measure_code,
+    measure_word,
+    share_width,
+    split_name,
+)
 from archgen.frozen import dataclass, replace
 from archgen.views.shapes import Block, Bullets, Facts, Figure, Inlines, Markdown, Paragraph, Section, Table, Text
 
@@ -18,17 +25,16 @@ SLIDE_WIDTH, SLIDE_HEIGHT = 960.0, 540.0
 MARGIN = 36.0
 BODY_TOP, BODY_BOTTOM = 84.0, 504.0
 _GUTTER = 24.0
-_LEFT_SHARE = 0.58
-"""The first of two columns: the picture, or what flows."""
+_LEFT_SHARE, _PICTURE_SHARE = 0.58, 0.64
+"""The first of two columns: what flows, or a picture with nothing below it."""
 _LINE = 1.23
 """LibreOffice sets lines of Carlito and Consolas so high."""
 _PADDING = 3.0
 """Above and below the text of a cell."""
-SIDE_PADDING = 5.0
-_GAP = 8.0
-_TEXT_SIZE, _COLUMN_TEXT_SIZE = 14.0, 12.0
-_CELL_SIZES, _COLUMN_CELL_SIZES = (14.0, 12.5, 11.0), (12.0, 11.0, 10.0)
-"""Tables are set in the largest type in which all of a column has room, else in the smallest."""
+SIDE_PADDING = 7.0
+GAP = 6.0
+_SIZES, _SIZES_BESIDE, _SIZES_ABOVE_PICTURES = (16.0, 15.0, 14.0, 13.0, 12.0), (14.0, 13.0, 12.0, 11.5), (13.0, 12.0)
+"""A section is set in the largest type in which it takes as few slides as in the smallest, which a room can read."""
 _MAX_CELL_LINES, _MAX_TEXT_LINES = 6, 10
 """Longer texts end in an ellipsis: a slide is looked at, the report has all of it."""
 _LEAST_PICTURE = 150.0
@@ -39,8 +45,11 @@ _LEAST_SCALE = 0.55
 """A picture that a whole slide shows smaller has type that nobody reads."""
 FIGURE_SCALE = 1.9
 """How much larger figures are than the words below them."""
-_CODE_EXCESS = 0.25
-"""How much wider than text code runs."""
+_CODE_EXCESS = 0.15
+"""How much wider than text code runs, which is set smaller."""
+_MAX_WORD_SHARE = 0.4
+_HEADING_SHARE = 0.6
+"""A heading of so much of its width takes two lines at most."""
 _SAFETY = 0.96
 """The share of a width that is taken for lines: fonts differ from program to program."""
 
@@ -70,7 +79,7 @@ class PlacedTable:
 
     place: Place
     table: Table
-    widths: tuple[float, ...]
+    widths: Sequence[float]
     heights: tuple[float, ...]
     size: float
     has_heading: bool
@@ -90,12 +99,11 @@ Placed = PlacedText | PlacedTable | PlacedPicture
 
 @dataclass(frozen=True, slots=True)
 class _Column:
-    """A column of a slide: where it stands and how its text is set."""
+    """A column of a slide: where it stands and how large its text is set."""
 
     left: float
     width: float
-    text_size: float
-    cell_sizes: tuple[float, ...]
+    size: float
 
 
 def flow_section(section: Section, pictures: Mapping[str, Picture]) -> tuple[tuple[Placed, ...], ...]:
@@ -103,46 +111,54 @@ def flow_section(section: Section, pictures: Mapping[str, Picture]) -> tuple[tup
 
     Two sections stand side by side, with the blocks of what holds them below, over the whole width.
     """
-    full = SLIDE_WIDTH - 2 * MARGIN
-    sheets: list[list[Placed]] = [[]]
-    if is_split := len(section.sections) > 1:
-        left = round((full - _GUTTER) * _LEFT_SHARE)
-        columns = [
-            (section.sections[0].blocks, _Column(MARGIN, left, _COLUMN_TEXT_SIZE, _COLUMN_CELL_SIZES)),
-            (
-                tuple(block for each in section.sections[1:] for block in each.blocks),
-                _Column(MARGIN + left + _GUTTER, full - left - _GUTTER, _COLUMN_TEXT_SIZE, _COLUMN_CELL_SIZES),
-            ),
-        ]
-    else:
-        blocks = (*section.blocks, *(block for each in section.sections for block in each.blocks))
-        columns = [(blocks, _Column(MARGIN, full, _TEXT_SIZE, _CELL_SIZES))]
-    for column_blocks, column in columns:
-        _add_column(sheets, 0, _flow_largest(column_blocks, column, pictures))
-    if is_split:
-        below = _Column(MARGIN, full, _COLUMN_TEXT_SIZE, _COLUMN_CELL_SIZES)
-        top = max((each.place.top + each.place.height + _GAP for each in sheets[-1]), default=BODY_TOP)
-        _add_column(sheets, len(sheets) - 1, _flow_largest(section.blocks, below, pictures, top))
+    parts = section.sections if len(section.sections) > 1 else ()
+    blocks = (
+        section.blocks if parts else [*section.blocks, *(each for part in section.sections for each in part.blocks)]
+    )
+    is_above_picture = not parts and any(isinstance(each, Figure) for each in blocks)
+    sizes = _SIZES_BESIDE if parts else _SIZES_ABOVE_PICTURES if is_above_picture else _SIZES
+    # Of slides of the same number the first ones, which are set largest.
+    sheets = min((_lay_out_blocks(parts, blocks, pictures, size) for size in sizes), key=len)
     return tuple(map(tuple, sheets))
 
 
-def _add_column(sheets: list[list[Placed]], first: int, flowed: Sequence[tuple[int, Placed]]) -> None:
-    for number, placed in flowed:
+def _lay_out_blocks(
+    parts: Sequence[Section], blocks: Sequence[Block], pictures: Mapping[str, Picture], size: float
+) -> list[list[Placed]]:
+    """Return what stands on each slide: parts side by side, and blocks below them."""
+    full = SLIDE_WIDTH - 2 * MARGIN
+    sheets: list[list[Placed]] = [[]]
+    if parts:
+        is_picture_alone = not blocks and all(isinstance(each, Figure) for each in parts[0].blocks)
+        left = round((full - _GUTTER) * (_PICTURE_SHARE if is_picture_alone else _LEFT_SHARE))
+        right = _Column(MARGIN + left + _GUTTER, full - left - _GUTTER, size)
+        _add_column(sheets, 0, parts[0].blocks, _Column(MARGIN, left, size), pictures, BODY_TOP)
+        beside = [block for each in parts[1:] for block in each.blocks]
+        _add_column(sheets, 0, beside, right, pictures, BODY_TOP)
+    top = max((each.place.top + each.place.height + GAP for each in sheets[-1]), default=BODY_TOP)
+    _add_column(sheets, len(sheets) - 1, blocks, _Column(MARGIN, full, size), pictures, top)
+    return sheets
+
+
+def _add_column(  # noqa: PLR0913, PLR0917 - where it begins
+    sheets: list[list[Placed]],
+    first: int,
+    blocks: Sequence[Block],
+    column: _Column,
+    pictures: Mapping[str, Picture],
+    top: float,
+) -> None:
+    """Add what blocks become to the slides from one on; paragraphs in a row are one text that people edit."""
+    last: Placed | None = None
+    for number, placed in _flow_blocks(blocks, column, pictures, top):
         while len(sheets) <= first + number:
             sheets.append([])
-        sheets[first + number].append(placed)
-
-
-def _flow_largest(
-    blocks: Sequence[Block], column: _Column, pictures: Mapping[str, Picture], top: float = BODY_TOP
-) -> list[tuple[int, Placed]]:
-    """Return what blocks become, tables in the largest type in which one slide has room, else in the smallest."""
-    flowed: list[tuple[int, Placed]] = []
-    for size in column.cell_sizes:
-        flowed = list(_flow_blocks(blocks, replace(column, cell_sizes=(size,)), pictures, top))
-        if all(number == 0 for number, _ in flowed):
-            break
-    return flowed
+        sheet = sheets[first + number]
+        if isinstance(placed, PlacedText) and isinstance(last, PlacedText) and sheet[-1:] == [last]:
+            place = replace(last.place, height=placed.place.top + placed.place.height - last.place.top)
+            last = sheet[-1] = replace(last, place=place, paragraphs=(*last.paragraphs, *placed.paragraphs))
+        else:
+            sheet.append(last := placed)
 
 
 def _flow_blocks(
@@ -158,7 +174,7 @@ def _flow_blocks(
                 if top + height > BODY_BOTTOM and top > BODY_TOP:
                     sheet, top = sheet + 1, BODY_TOP
                 yield sheet, replace(part, place=Place(column.left, top, column.width, height))
-                top += height + _GAP
+                top += height + GAP
         elif isinstance(block, Figure):
             picture = pictures.get(block.graph)
             is_large = picture is not None and _fit_picture(picture, column, BODY_TOP) < _LEAST_SCALE
@@ -167,7 +183,7 @@ def _flow_blocks(
                 note = (Text(f"This picture {lack}. {block.alt}".strip(), muted=True),)
                 text = _fit_text((note,), column)
                 yield sheet, _place_text(text, column, top)
-                top += _measure_text(text, column) + _GAP
+                top += _measure_text(text, column) + GAP
                 continue
             if BODY_BOTTOM - top < _LEAST_PICTURE:
                 sheet, top = sheet + 1, BODY_TOP
@@ -175,7 +191,7 @@ def _flow_blocks(
             width, height = picture.width * scale, picture.height * scale
             place = Place(column.left + (column.width - width) / 2, top, width, height)
             yield sheet, PlacedPicture(place, picture, block.alt or block.caption)
-            top += height + _GAP
+            top += height + GAP
         else:
             for paragraph in _list_paragraphs(block):
                 text = _fit_text((paragraph,), column)
@@ -185,7 +201,7 @@ def _flow_blocks(
                 if top + needed > BODY_BOTTOM and top > BODY_TOP:
                     sheet, top = sheet + 1, BODY_TOP
                 yield sheet, _place_text(text, column, top)
-                top += height + _GAP
+                top += height + GAP
 
 
 def _fit_picture(picture: Picture, column: _Column, top: float) -> float:
@@ -207,17 +223,17 @@ def _list_paragraphs(block: Block) -> Iterator[Inlines]:
 
 
 def _fit_text(paragraphs: Sequence[Inlines], column: _Column) -> tuple[Inlines, ...]:
-    return tuple(cut_runs(each, column.width, column.text_size, _MAX_TEXT_LINES) for each in paragraphs)
+    return tuple(cut_runs(each, column.width, column.size, _MAX_TEXT_LINES) for each in paragraphs)
 
 
 def _measure_text(paragraphs: Sequence[Inlines], column: _Column) -> float:
-    lines = sum(_count_run_lines(each, column.width, column.text_size) for each in paragraphs)
-    return lines * column.text_size * _LINE + 2
+    lines = sum(_count_run_lines(each, column.width, column.size) for each in paragraphs)
+    return lines * column.size * _LINE + 2
 
 
 def _place_text(paragraphs: tuple[Inlines, ...], column: _Column, top: float) -> PlacedText:
     height = _measure_text(paragraphs, column)
-    return PlacedText(Place(column.left, top, column.width, height), paragraphs, column.text_size)
+    return PlacedText(Place(column.left, top, column.width, height), paragraphs, column.size)
 
 
 def _count_run_lines(inlines: Inlines, width: float, size: float) -> int:
@@ -254,7 +270,7 @@ def _take_characters(inlines: Inlines, room: int) -> Iterator[Text]:
 def _cut_table(table: Table, column: _Column, room: float) -> Iterator[PlacedTable]:
     """Yield parts of a table, the first one in the room that is left, the others on slides of their own."""
     table = _drop_bars(table)
-    whole = _set_table(table, column, column.cell_sizes[-1])
+    whole = _set_table(table, column)
     top = 1 if whole.has_heading else 0
     head, heights = whole.heights[:top], whole.heights[top:]
     start, used = 0, fsum(head)
@@ -272,8 +288,9 @@ def _take_rows(whole: PlacedTable, head: tuple[float, ...], start: int, end: int
     return replace(whole, table=replace(whole.table, rows=whole.table.rows[start:end]), heights=heights)
 
 
-def _set_table(table: Table, column: _Column, size: float) -> PlacedTable:
-    """Return a table as it is in a type size, wherever it stands."""
+def _set_table(table: Table, column: _Column) -> PlacedTable:
+    """Return a table as it is in a column, wherever it stands."""
+    size = column.size
     widths = _share_width(table, column)
     has_heading = any(each.title for each in table.columns)
     rows = tuple(
@@ -300,9 +317,43 @@ def _drop_bars(table: Table) -> Table:
     )
 
 
-def _share_width(table: Table, column: _Column) -> tuple[float, ...]:
-    total = fsum(each.weight for each in table.columns)
-    return tuple(column.width * each.weight / total for each in table.columns)
+def _share_width(table: Table, column: _Column) -> list[float]:
+    weights = [each.weight for each in table.columns]
+    shares = [column.width * each / fsum(weights) for each in weights]
+    if not any(each.title for each in table.columns):
+        return shares
+    words, lines, parts = [], [], []
+    for at, each in enumerate(table.columns):
+        cells = ((Text(each.title, strong=True),), *(row[at] for row in table.rows))
+        runs = [(run, _measure_run(run, column.size)) for cell in cells for run in cell]
+        longest = max(width for _, widths in runs for width in widths)
+        heading = _measure_line(cells[0][0], column.size) * _HEADING_SHARE
+        words.append(min(max(longest, heading), column.width * _MAX_WORD_SHARE))
+        parts.append(max(_measure_part(run, widths) for run, widths in runs))
+        lines.append(max((fsum(_measure_line(run, column.size) for run in cell) for cell in cells[1:]), default=0.0))
+    needed = [max(sides) + 2 * SIDE_PADDING for sides in zip(words, lines, strict=True)]
+    if all(share >= width for share, width in zip(shares, needed, strict=True)):
+        return shares
+    room = column.width - 2 * SIDE_PADDING * len(weights)
+    return [width + 2 * SIDE_PADDING for width in share_width(words, lines, parts, weights, room)]
+
+
+def _measure_run(run: Text, size: float) -> list[float]:
+    """Return the width of each word of a run, and of none."""
+    scale = size / _SAFETY * (BOLD_FACTOR if run.strong or run.status else 1)
+    return [0.0, *((measure_code(word) if run.code else measure_word(word)) * scale for word in run.text.split())]
+
+
+def _measure_line(run: Text, size: float) -> float:
+    return fsum(_measure_run(run, size)) + run.text.count(" ") * size / 4
+
+
+def _measure_part(run: Text, widths: Sequence[float]) -> float:
+    """Return the width of what must stand on one line: a word, or a part of a name."""
+    if not run.code:
+        return max(widths)
+    names = zip(run.text.split(), widths[1:], strict=True)
+    return max((width * len(part) / len(name) for name, width in names for part in split_name(name)), default=0.0)
 
 
 def _measure_row(row: Sequence[Inlines], widths: Sequence[float], size: float, *, is_figures: bool) -> float:
@@ -317,6 +368,6 @@ def _measure_row(row: Sequence[Inlines], widths: Sequence[float], size: float, *
 
 
 def _measure_start(table: Table, column: _Column) -> float:
-    """Return the height of a table's heading and its first row in the smallest type."""
-    first = _set_table(replace(table, rows=table.rows[:1]), column, column.cell_sizes[-1])
+    """Return the height of a table's heading and its first row."""
+    first = _set_table(replace(table, rows=table.rows[:1]), column)
     return fsum(first.heights)

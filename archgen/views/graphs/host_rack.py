@@ -8,7 +8,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from decimal import ROUND_CEILING
 from fractions import Fraction
 
-from archgen.frozen import dataclass
+from archgen.frozen import dataclass, replace
 from archgen.model.deployment import Host, Link
 from archgen.model.node import Node
 from archgen.model.runtime_facts import find_container_threads
@@ -19,6 +19,10 @@ from archgen.views.lookup import Lookup
 from archgen.views.picture_shapes import UPRIGHT, Sheet, SheetBar, SheetColour, SheetLine, SheetText
 
 _STRIP_GAP = 8.0
+_BARE_HEIGHT, _ROW_HEIGHT = 46.0, 15.0
+"""Of a strip without rows of nodes and flows, and of such a row."""
+_SLIDE_HEIGHT = 430.0
+"""A rack of so high strips, its link and its note fill a slide in the height as they do in the width."""
 _TITLE_WIDTH, _CORES_WIDTH, _NODES_WIDTH = 214.0, 165.0, 190.0
 _CORE_WIDTH, _MOST_CORES = 16.5, 32
 _UPRIGHT_WIDTH = 440.0
@@ -48,7 +52,16 @@ class _Crossing:
 
 def draw_host_racks(lookup: Lookup) -> tuple[Sheet, ...]:
     """Draw the hosts for screens and slides, and for paper and narrow screens; nothing without a host."""
-    return (_draw_rack(lookup), _draw_upright(lookup)) if lookup.architecture.hosts else ()
+    if not lookup.architecture.hosts:
+        return ()
+    return _draw_rack(lookup, 4 if len(lookup.architecture.hosts) <= _FEW_HOSTS else 2), _draw_upright(lookup)
+
+
+def draw_slide_rack(lookup: Lookup) -> Sheet:
+    """Draw the hosts for a slide: of each as much as leaves the type of all as large as it can be."""
+    room = _SLIDE_HEIGHT / max(1, len(lookup.architecture.hosts)) - _STRIP_GAP - _BARE_HEIGHT
+    sheet = _draw_rack(lookup, max(1, min(4, int(room / _ROW_HEIGHT))))
+    return replace(sheet, id="hosts_slide", notes=sheet.notes[:1])
 
 
 def list_crossings(lookup: Lookup) -> tuple[_Crossing, ...]:
@@ -107,11 +120,10 @@ class _Canvas:
         )
 
 
-def _draw_rack(lookup: Lookup) -> Sheet:
+def _draw_rack(lookup: Lookup, rows: int) -> Sheet:
     canvas, crossings = _Canvas(), list_crossings(lookup)
     hosts = list(lookup.architecture.hosts.values())
-    rows = 4 if len(hosts) <= _FEW_HOSTS else 2
-    height = 46.0 + rows * 15
+    height = _BARE_HEIGHT + rows * _ROW_HEIGHT
     width = _TITLE_WIDTH + _CORES_WIDTH + _NODES_WIDTH + 36
     links = [
         link

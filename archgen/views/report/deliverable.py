@@ -294,7 +294,7 @@ class DeliverablePrinter:
         partners = self.architecture.partners
         return ", ".join(partners[each].title if each in partners else each for each in owners)
 
-    def list_chain_facts(self, result: ChainResult) -> Iterator[tuple[str, Inlines]]:
+    def list_chain_facts(self, result: ChainResult, max_assumptions: int = 3) -> Iterator[tuple[str, Inlines]]:
         """Yield what a chain's time comes from, and what to do, each below its heading."""
         timing, chain = self.lookup.timing, self.architecture.chains[result.id]
         if timing is None:
@@ -305,7 +305,10 @@ class DeliverablePrinter:
         yield "Why", element_timing.link_names(self.lookup, timing, advice.largest_parts) if advice else ()
         yield "What to do", inline_text.message_to_inlines(advice.first_step) if advice else ()
         assumptions = list(dict.fromkeys(element_timing.describe_assumptions(timing, result)))
-        yield "Taken for granted", inline_text.to_inlines(f"{join_first(assumptions, 3)}.") if assumptions else ()
+        yield (
+            "Taken for granted",
+            inline_text.to_inlines(f"{join_first(assumptions, max_assumptions)}.") if assumptions else (),
+        )
 
     def make_deployment(self) -> Iterator[Section]:
         """Yield the chapter of hosts and links, without the picture of all nodes."""
@@ -343,7 +346,7 @@ class DeliverablePrinter:
         points = dashboard.make_chain_points(self.lookup)
         blocks: list[Block] = [Paragraph(inline_text.to_inlines(lead)), *([Bullets(tuple(points))] if points else [])]
         if rows:
-            columns = make_columns(("Who", 0.9), ("What", 3), ("What rests on it", 1.3), ("Where", 1.3))
+            columns = make_columns(("Who", 0.9), ("What", 3), ("Rests on it, or how grave", 1.3), ("Where", 1.3))
             table = Table("table:open_points", "Open points", columns, tuple(rows), numbered=False, dense=True)
             blocks.append(drop_empty_columns(table))
         if rows or points:

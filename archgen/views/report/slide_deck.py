@@ -105,7 +105,7 @@ class _SlideMaker:
     def _show_chain(self, result: ChainResult) -> Iterator[Section]:
         """Yield the picture of a chain beside its verdict, what rests on it and what to do; below it its steps.
 
-        Below a picture of many steps is no room for them: they stand beside it then, without their reasons.
+        Below a picture of many steps is no room for them: beside it stands whose each is; how long it takes, the picture says.
         """
         if self.lookup.timing is None:
             return
@@ -115,11 +115,11 @@ class _SlideMaker:
             chain_charts.describe_chain_verdict(result, self.lookup.timing), status=chain_status.find_status(result)
         )
         told, *_, table = element_timing.make_chain_blocks(self.lookup, self.lookup.timing, result, _TOLD_BESIDE)
-        facts = dict(self.printer.list_chain_facts(result))
+        stands_beside = bool(pictures) and len(result.terms) > _MAX_STEPS_BELOW
+        facts = dict(self.printer.list_chain_facts(result, max_assumptions=1 if stands_beside else 3))
         if chain.requirements:
             links = (inline_text.requirement_link(self.architecture, name) for name in chain.requirements)
             facts["Rests on it"] = inline_text.join_inlines(links, "; ")
-        stands_beside = bool(pictures) and len(result.terms) > _MAX_STEPS_BELOW
         if isinstance(told, Facts) and not stands_beside:
             facts |= dict(told.rows[1:])
         lines = [Paragraph((Text(f"{name}: ", strong=True), *words)) for name, words in facts.items() if words]
@@ -144,7 +144,7 @@ class _SlideMaker:
             ("Why", 4.4),
         )
         whole = dataclasses.replace(table, columns=columns, rows=rows)
-        return keep_columns(whole, range(len(columns) - 1)) if is_short else whole
+        return keep_columns(whole, range(2)) if is_short else whole
 
     def show_hosts(self) -> Iterator[Section]:
         """Yield the picture of the hosts, and of what crosses their links."""

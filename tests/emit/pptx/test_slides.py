@@ -114,20 +114,58 @@ def test_the_same_outline_gives_the_same_bytes_with_pictures_that_are_described(
     assert 'cx="12192000" cy="6858000"' in slide
 
 
-def test_text_is_placed_below_text() -> None:
-    lines = Section("s", "Lines", (Paragraph((Text("one"),)), Paragraph((Text("two"),))))
-    first, second = flow_section(lines, {})[0]
-    assert isinstance(first, PlacedText)
-    assert second.place.top > first.place.top
+def test_paragraphs_in_a_row_are_one_text_that_people_edit() -> None:
+    lines = Section("s", "Lines", (Paragraph((Text("one"),)), Paragraph((Text("two"),)), _table(1)))
+    text, table = flow_section(lines, {})[0]
+    assert isinstance(text, PlacedText)
+    assert [run.text for runs in text.paragraphs for run in runs] == ["one", "two"]
+    assert table.place.top > text.place.top + 2 * text.size
+
+
+def _widths(*cells: Inlines, titles: tuple[str, ...]) -> list[float]:
+    """Return the widths of a table's columns, all of the same weight, in a row of so many cells."""
+    columns = tuple(Column(title, 1) for title in titles)
+    (table,) = flow_section(Section("s", "Places", (Table("table:t", "Places", columns, (cells,)),)), {})[0]
+    assert isinstance(table, PlacedTable)
+    return list(table.widths)
+
+
+def test_columns_are_as_wide_as_what_stands_in_them() -> None:
+    words, place = (Text("word " * 90),), "groups/communication_planner.yaml:102"
+    narrow, wide, _ = _widths((Text("7"),), (Text(place, code=True),), words, titles=("No", "Where", "What"))
+    assert narrow < 960 / 12
+    assert wide > 0.54 * 16 * len(place) * 0.75, "a name is not broken in its middle"
+    even = _widths((Text("7"),), (Text("8"),), titles=("No", "Where"))
+    assert even[0] == even[1], "as given where all has room"
+    headed, _ = _widths((Text("7"),), words, titles=("Responds, ms", "What"))
+    assert headed > 65, "a heading is broken between its words"
 
 
 def test_code_takes_more_room_than_text() -> None:
-    columns = (Column("Where", 1), Column("What", 5))
-    words, place = (Text("x"),), "groups/robot_action_planner.yaml:378"
-    rows = tuple(((Text(place, code=is_code),), words) for is_code in (False, True))
-    (table,) = flow_section(Section("s", "Places", (Table("table:t", "Places", columns, rows),)), {})[0]
-    assert isinstance(table, PlacedTable)
-    assert table.heights[1] < table.heights[2]
+    text, code = (
+        _widths((Text("a_long_name_of_one", code=is_code),), (Text("word " * 90),), titles=("Where", "What"))[0]
+        for is_code in (False, True)
+    )
+    assert text < code
+
+
+@pytest.mark.parametrize("rows", [12, 24, 40])
+def test_type_is_as_large_as_it_can_be_on_as_many_slides_and_never_too_small_to_read(rows: int) -> None:
+    sides = tuple(Section(name, "", (_table(rows),)) for name in ("l", "r"))
+    for section in (Section("s", "All", (_table(rows),)), Section("s", "Both", (), sides)):
+        placed = [each for sheet in flow_section(section, {}) for each in sheet if isinstance(each, PlacedTable)]
+        assert min(each.size for each in placed) >= 11.5
+        assert len({each.size for each in placed}) == 1, "both sides in one size"
+
+
+def test_a_picture_beside_words_has_more_room_than_words_beside_words() -> None:
+    words = Section("r", "", (Paragraph((Text("Met"),)),))
+    picture = Section("l", "", (Figure("figure:p", "p", "A", "A"),))
+    drawn = {"p": Picture("p", 452, 200, png=b"x")}
+    (beside, *_) = flow_section(Section("s", "", (), (picture, words)), drawn)[0]
+    (above, *_) = flow_section(Section("s", "", (_table(3),), (picture, words)), drawn)[0]
+    assert beside.place.width > 1.2 * 452
+    assert above.place.width < beside.place.width
 
 
 @pytest.mark.parametrize(("width", "is_shown"), [(900.0, True), (1780.0, False)])

@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 
 from archgen import pipeline
-from archgen.views.graphs.host_rack import draw_host_racks, list_crossings
+from archgen.views.graphs.host_rack import draw_host_racks, draw_slide_rack, list_crossings
 from archgen.views.lookup import Lookup, make_lookup
 from archgen.views.picture_shapes import Sheet
 from archgen.views.timing.timing_lookup import analyse_with_chains
@@ -114,3 +114,12 @@ def test_many_hosts_and_none(tmp_path: Path) -> None:
     assert all(f"H{at}" in list_words(sheet) for sheet in draw_host_racks(lookup) for at in range(40))
     assert draw_host_racks(replace(lookup, architecture=replace(lookup.architecture, hosts={}))) == ()
     assert draw_host_racks(replace(lookup, timing=None))
+
+
+def test_the_rack_of_a_slide_is_as_high_as_leaves_its_type_large() -> None:
+    lookup = look_up(RAMCIP)
+    rack, slide = draw_host_racks(lookup)[0], draw_slide_rack(lookup)
+    bottoms = [max(bar.y + bar.height for bar in sheet.bars) for sheet in (rack, slide)]
+    assert bottoms[1] <= 430 < bottoms[0]
+    assert slide.id == "hosts_slide"
+    assert {host.title for host in lookup.architecture.hosts.values()} <= set(list_words(slide))
