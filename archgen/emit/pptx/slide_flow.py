@@ -12,6 +12,7 @@ from archgen.emit.picture import Picture
 from archgen.emit.text_metrics import (
     BOLD_FACTOR,
     count_lines,
+    join_hard_blanks,
     measure_code,
     measure_word,
     share_width,
@@ -341,7 +342,13 @@ def _share_width(table: Table, column: _Column) -> list[float]:
 def _measure_run(run: Text, size: float) -> list[float]:
     """Return the width of each word of a run, and of none."""
     scale = size / _SAFETY * (BOLD_FACTOR if run.strong or run.status else 1)
-    return [0.0, *((measure_code(word) if run.code else measure_word(word)) * scale for word in run.text.split())]
+    return [
+        0.0,
+        *(
+            (measure_code(word) if run.code else measure_word(word)) * scale
+            for word in join_hard_blanks(run.text).split()
+        ),
+    ]
 
 
 def _measure_line(run: Text, size: float) -> float:
@@ -352,7 +359,7 @@ def _measure_part(run: Text, widths: Sequence[float]) -> float:
     """Return the width of what must stand on one line: a word, or a part of a name."""
     if not run.code:
         return max(widths)
-    names = zip(run.text.split(), widths[1:], strict=True)
+    names = zip(join_hard_blanks(run.text).split(), widths[1:], strict=True)
     return max((width * len(part) / len(name) for name, width in names for part in split_name(name)), default=0.0)
 
 

@@ -201,12 +201,12 @@ def _describe_agreements(edit: Edit, comparison: Comparison) -> Iterator[str]:
 
 def _name_findings(edit: Edit, repeated_findings: Mapping[Diagnostic, Change]) -> Iterator[str]:
     """Yield as which findings an edit is found, and where."""
-    places: dict[str, list[str]] = {}
+    places: dict[str, dict[str, None]] = {}
     for finding, change in repeated_findings.items():
         if change in edit.changes:
-            places.setdefault(finding.rule, []).append(f"`{finding.span}`")
+            places.setdefault(finding.rule, {})[f"`{finding.span}`"] = None
     for rule, spans in places.items():
-        yield f"found as `{rule}` at {join_words(fit_lines(spans, _MAX_PLACES + 1, '{} more places'))}"
+        yield f"found as `{rule}` at {join_words(fit_lines([*spans], _MAX_PLACES + 1, '{} more places'))}"
 
 
 _TITLE = re.compile(r" \([^()`]*\)")

@@ -87,6 +87,12 @@ def test_nothing_changed(told: Told) -> None:
     )
 
 
+def test_what_is_late_in_a_variant_too_is_found_at_one_place(told: Told) -> None:
+    before = ROBOT + "variants: {slow: {changes: {nodes: {camera: {timing: {wcet: 3 ms}}}}}}\n"
+    text = told(("wcet: 20 ms", "wcet: 60 ms"), before=before)
+    assert "found as `late-chain` at `robot.yaml:22:10`\n" in text
+
+
 def test_a_chain_that_misses_its_deadline_now(told: Told) -> None:
     assert (
         told(("wcet: 20 ms", "wcet: 60 ms"))

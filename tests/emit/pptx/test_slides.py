@@ -137,6 +137,8 @@ def test_columns_are_as_wide_as_what_stands_in_them() -> None:
     assert wide > 0.54 * 16 * len(place) * 0.75, "a name is not broken in its middle"
     even = _widths((Text("7"),), (Text("8"),), titles=("No", "Where"))
     assert even[0] == even[1], "as given where all has room"
+    bound, _, _ = _widths((Text("~46.4\u00a0ms"),), *(words for _ in range(2)), titles=("", "", "What"))
+    assert bound > 14 + 16 * 3.9, "a blank that does not break keeps figure and unit together"
     headed, _ = _widths((Text("7"),), words, titles=("Responds, ms", "What"))
     assert headed > 65, "a heading is broken between its words"
 
