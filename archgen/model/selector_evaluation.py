@@ -13,8 +13,9 @@ from archgen.diagnostics import NAMES_HELP, find_closest
 from archgen.frozen import dataclass, field, replace
 from archgen.grouping import group_pairs
 from archgen.model import flow_graph
-from archgen.model.architecture import Architecture
+from archgen.model.architecture import Architecture, Milestone
 from archgen.model.graph_search import find_reachable
+from archgen.model.latest_result import remember_latest
 from archgen.model.path_resolver import ElementRef, PathResolver
 from archgen.model.selector_keys import SelectorHit, find_by_key, list_key_values, matches_wildcard
 from archgen.model.selector_parser import ALL_STEPS, SelectorAtom, SelectorProblem, SelectorWord, parse_selector
@@ -36,6 +37,27 @@ class Selection:
 
     components: frozenset[str] = frozenset()
     nodes: frozenset[str] = frozenset()
+
+
+@dataclass(frozen=True, slots=True)
+class MilestoneNeeds:
+    """A milestone with the leaves that it needs, by complete ids in the order of the architecture."""
+
+    milestone: Milestone
+    components: tuple[str, ...]
+
+
+@remember_latest
+def list_needs(architecture: Architecture) -> tuple[MilestoneNeeds, ...]:
+    """Return what the milestones need, by their days; those without one come last."""
+    evaluator = SelectorEvaluator(architecture)
+    found = []
+    for milestone in architecture.milestones.values():
+        selection = evaluator.evaluate(milestone.needs)[0] if milestone.needs else Selection()
+        implemented = (name for node in selection.nodes for name in architecture.nodes[node].implements)
+        needed = selection.components.union(implemented)
+        found.append(MilestoneNeeds(milestone, tuple(name for name in architecture.components if name in needed)))
+    return tuple(sorted(found, key=lambda each: (each.milestone.date is None, each.milestone.date or "")))
 
 
 def evaluate_selector(

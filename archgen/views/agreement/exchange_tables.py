@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+from collections import defaultdict
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 
+from archgen.diagnostics import join_words
 from archgen.frozen import dataclass
 from archgen.grouping import group_pairs
 from archgen.model.latest_result import remember_latest
@@ -56,6 +58,18 @@ def gather_exchanges(lookup: Lookup) -> tuple[PartnerExchange, ...]:
         for pair in pairs
         for all_terms in (interfaces_by_pair[pair],)
     )
+
+
+def list_unsettled(lookup: Lookup, component_ids: Iterable[str]) -> Mapping[str, Inlines]:
+    """Return by partner, in words, which terms of what components give him and take from him are still open."""
+    own, words = set(component_ids), defaultdict[str, list[str]](list)
+    for exchange in gather_exchanges(lookup):
+        for terms in exchange.interfaces if exchange.open_count else ():
+            ends = components_at_ends(lookup.architecture, terms.interface)
+            for verb, end, other in zip(("it owes", "it is owed"), ends, reversed(terms.interface.pair), strict=True):
+                if terms.open_terms and any(each.id in own for each in end):
+                    words[other].append(f"{verb} {join_words(terms.open_terms)} of {terms.title}")
+    return {partner: (Text(f" · {'; '.join(dict.fromkeys(all_words))}"),) for partner, all_words in words.items()}
 
 
 PACE_TERMS = (RATE.key, "response")

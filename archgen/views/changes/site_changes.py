@@ -9,8 +9,10 @@ from functools import cached_property
 from typing import Literal, get_args
 
 from archgen.compare import Change, Comparison
+from archgen.compare.comparison import BoundaryChange
 from archgen.compare.text_meaning import find_differences
 from archgen.frozen import dataclass, replace
+from archgen.grouping import group_pairs
 from archgen.views import inline_text
 from archgen.views.changes.boundary_lines import write_boundary_lines
 from archgen.views.changes.change_wording import CHANGE_SIGNS, choose_mark, text_runs
@@ -26,6 +28,7 @@ from archgen.views.shapes import (
     Facts,
     Inlines,
     Page,
+    Paragraph,
     Section,
     Table,
     Text,
@@ -95,6 +98,25 @@ class SiteChanges:
         return write_boundary_lines(replace(self.comparison, boundaries=tuple(own)), name_partners(self.comparison))
 
     @cached_property
+    def arrivals_by_component(self) -> Mapping[str, Sequence[BoundaryChange]]:
+        """What comes to a component from other partners, where that is otherwise than before."""
+        changed = {each.interface_id: each for each in self.comparison.boundaries}
+        return group_pairs(
+            (connection.input.rpartition(".")[0], changed[output])
+            for connection in self.comparison.after.architecture.connections
+            for output in connection.outputs
+            if output in changed
+        )
+
+    def find_elements(self, anchor: str) -> tuple[list[str], list[str]]:
+        """Return the components that a page is about, and the anchors of the pages that tell their changes: its own first."""
+        kind, name = split_anchor(anchor)
+        nodes = self.comparison.after.architecture.nodes
+        if kind != "component":
+            return list(nodes[name].implements) if kind == "node" and name in nodes else [], [anchor]
+        return [name], [anchor, *(f"node:{each.id}" for each in nodes.values() if name in each.implements)]
+
+    @cached_property
     def kinds_in_pictures(self) -> Mapping[str, ElementChange]:
         """How the element of each box changed: groups, too, in which something did."""
         return {**dict.fromkeys(sorted(self.changed_groups), "changed"), **self.kinds_by_page}
@@ -102,6 +124,8 @@ class SiteChanges:
 
 def _find_page(change: Change) -> str:
     """Return the anchor of the page that shows what changed, empty where there is none."""
+    if change.element_kind == "port":
+        return f"node:{change.element_id.partition('.')[0]}"
     if change.element_kind in _PORT_KINDS:
         return f"component:{change.element_id.rpartition('.')[0]}"
     is_gone = change.kind == "removed"
@@ -127,9 +151,8 @@ def mark_page(page: Page, site_changes: SiteChanges) -> Page:
         section = _mark_lists(section, site_changes.kinds_by_page)
     anchor = page.anchor.rsplit(":", 2)[0] if page.kind == "interfaces" else page.anchor
     kind = site_changes.kinds_by_page.get(anchor)
+    section = replace(section, blocks=(*_list_change_blocks(anchor, site_changes), *section.blocks))
     if kind is not None:
-        table = _compare_versions(anchor, site_changes)
-        section = replace(section, blocks=(*((table,) if table else ()), *section.blocks))
         page = replace(page, verdict=(*page.verdict, *_make_chip(kind, site_changes.since)))
     is_changed = page.is_changed or kind is not None or page.anchor in site_changes.changed_groups
     return replace(page, section=section, is_changed=is_changed)
@@ -213,13 +236,23 @@ def _mark_table(table: Table, kinds: Mapping[str, ElementChange]) -> Table:
     return replace(table, rows=rows)
 
 
-def _compare_versions(anchor: str, site_changes: SiteChanges) -> Table | None:
-    """Return what changed of an element, both versions side by side; None for one that is new as a whole."""
-    rows = tuple(row for change in site_changes.changes_by_page[anchor] for row in _list_rows(change, anchor))
-    if not rows:
-        return None
-    columns = (Column("What", 1.2), Column(f"Before ({site_changes.since})", 2), Column("Now", 2))
-    return Table(f"table:since/{anchor}", f"Changed since {site_changes.since}", columns, rows)
+def _list_change_blocks(anchor: str, site_changes: SiteChanges) -> Iterator[Block]:
+    """Yield what changed of an element, both versions side by side (not of one that is new as a whole), and what comes to it."""
+    components, anchors = site_changes.find_elements(anchor)
+    rows = tuple(
+        row
+        for each in anchors
+        for change in site_changes.changes_by_page.get(each, ())
+        for row in _list_rows(change, each)
+    )
+    if rows:
+        columns = (Column("What", 1.2), Column(f"Before ({site_changes.since})", 2), Column("Now", 2))
+        yield Table(f"table:since/{anchor}", f"Changed since {site_changes.since}", columns, rows)
+    arriving = tuple({each: None for name in components for each in site_changes.arrivals_by_component.get(name, ())})
+    comparison = replace(site_changes.comparison, boundaries=arriving)
+    if lines := write_boundary_lines(comparison, name_partners(comparison)) if arriving else ():
+        yield Paragraph((Text(f"What comes to it otherwise since {site_changes.since}", strong=True),))
+        yield Bullets(tuple(tuple(text_runs(line.text)) for line in lines))
 
 
 def _list_rows(change: Change, anchor: str) -> Iterator[tuple[Inlines, ...]]:

@@ -94,7 +94,7 @@ def list_node_facts(lookup: Lookup, node: Node) -> list[Fact]:
             if not text.startswith("unknown")  # of most nodes of a design; cards say so
         ),
         Fact("owner", "Owner", inline_text.owner_links(architecture, node.owners) if node.owners else ()),
-        Fact("host", "Runs on", _location_cell(lookup, node)),
+        Fact("host", "Runs on", location_cell(lookup, node)),
         Fact("activity", "Callbacks", inline_text.to_inlines(", ".join(part for part in parts if part))),
         Fact(
             "", "Parameter files", inline_text.join_inlines((Text(name, code=True),) for name in node.parameter_files)
@@ -136,7 +136,7 @@ def _program_parts(node: Node) -> Inlines:
     return tuple(part for name, value in parts if value for part in (Text(f", {name} "), Text(value, code=True)))
 
 
-def _location_cell(lookup: Lookup, node: Node) -> Inlines:
+def location_cell(lookup: Lookup, node: Node) -> Inlines:
     """Return the host of a node, and the container whose process it shares."""
     host = inline_text.host_link(lookup.architecture, node.host)
     if not node.container:

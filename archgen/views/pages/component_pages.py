@@ -8,6 +8,7 @@ from archgen.frozen import dataclass, replace
 from archgen.model.component import Component, ComponentType, Group
 from archgen.model.component_nesting import find_component, list_surrounding
 from archgen.views import inline_text
+from archgen.views.agreement.exchange_tables import list_unsettled
 from archgen.views.elements.functional_level import (
     make_component_blocks,
     make_component_table,
@@ -237,7 +238,8 @@ class ComponentPages:
 
     def _make_page(self, component: Component, blocks: tuple[Block, ...], crumbs: Crumbs, lead: str) -> Page:
         is_composed = component.id in self.lookup.architecture.shells
-        sections = make_flow_sections(self.lookup, component)
+        unsettled = list_unsettled(self.lookup, self.lookup.architecture.leaves_of(component.id))
+        sections = make_flow_sections(self.lookup, component, unsettled)
         if self.shows_nodes:
             figures = self.keep_drawn(make_implementation_blocks(self.lookup, component.id))
             nodes = list(self.lookup.nodes_inside(component.id))

@@ -15,6 +15,7 @@ from archgen.views import inline_text, timing_words
 from archgen.views.element_references import message_link
 from archgen.views.elements import type_fields
 from archgen.views.elements.annotation_facts import list_annotation_facts
+from archgen.views.elements.implementation_level import location_cell
 from archgen.views.elements.port_tables import list_topic_facts, write_deprecation
 from archgen.views.lookup import Lookup
 from archgen.views.sequences.sequence_blocks import make_sequence_blocks
@@ -190,8 +191,8 @@ def make_node_table(
             ),
             inline_text.value_or_unknown(node.package),
             inline_text.value_or_unknown(node.status),
-            inline_text.host_link(architecture, node.host) if host_id is None else (),
-            _timing_cell(node),
+            location_cell(lookup, node) if host_id is None else (),
+            _timing_cell(node, is_short=component is None),
         )
         for node in nodes
     )
@@ -207,11 +208,10 @@ def make_node_table(
     return [drop_empty_columns(Table(f"table:nodes/{name}", caption, columns, rows))]
 
 
-def _timing_cell(node: Node) -> Inlines:
-    """Return the timing of all components that a node implements, in short."""
-    summary = "; ".join(
-        short_timing for timing in node.timing.values() if (short_timing := timing_words.format_short_timing(timing))
-    )
+def _timing_cell(node: Node, *, is_short: bool) -> Inlines:
+    """Return the timing of all components that a node implements, in short or with cores and priorities."""
+    write = timing_words.format_short_timing if is_short else timing_words.format_timing_sentence
+    summary = "; ".join(filter(None, map(write, node.timing.values())))
     return (Text(summary, sort_number=_shortest_period(node)),) if summary else ()
 
 

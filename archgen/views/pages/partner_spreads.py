@@ -21,6 +21,7 @@ from archgen.views.agreement.promise_rows import QOS_OFFERED
 from archgen.views.elements.functional_level import first_sentence
 from archgen.views.inline_text import count_noun
 from archgen.views.lookup import Lookup
+from archgen.views.pages.short_spreads import is_short, list_short_blocks
 from archgen.views.shapes import (
     Block,
     Bullets,
@@ -146,6 +147,7 @@ class SpreadWriter:
 
     def write_spread(self, partner: Partner) -> Section:
         """Write the section of a partner."""
+        shorts = list_short_blocks(self, partner) if is_short(self, partner) else None
         parts = (
             ("Gives", self._list_flow_blocks(partner, 0)),
             ("Takes", self._list_flow_blocks(partner, 1)),
@@ -155,14 +157,16 @@ class SpreadWriter:
             ("If it is late", self.list_impact_blocks(partner)),
             ("What changed for it", self.list_change_blocks(partner)),
         )
-        blocks = tuple(block for title, part in parts for block in head_part(title, part))
+        chosen = (("", shorts), parts[4], parts[6]) if shorts else parts
+        blocks = tuple(block for title, part in chosen for block in head_part(title, part))
         lead = " ".join((partner.description or "").split())
         lead = f"{lead.rstrip('.')}. " if lead else ""
         own = self.components.get(partner.id, ())
         groups = {component.group: None for component in own}
         titles = [self.lookup.architecture.groups[each].title for each in groups]
         places = f" in {join_first(titles, 3)}" if titles else ""
-        words = f"{lead}{count_noun(len(own), 'component')}{places}."
+        names = f": {', '.join(component.title for component in own)}" if shorts and own else ""
+        words = f"{lead}{count_noun(len(own), 'component')}{places}{names}."
         return Section(
             f"partner:{partner.id}",
             partner.title,
@@ -174,10 +178,10 @@ class SpreadWriter:
         if not interfaces:
             yield Paragraph(inline_text.to_inlines(Text("Nothing.", muted=True)))
             return
-        rows = self._gather_rows(interfaces, side, by_output=True)
+        rows = self.gather_rows(interfaces, side, by_output=True)
         words = ""
         if self.folds and len(rows) > _MAX_ROWS:
-            rows, words = self._gather_rows(interfaces, side, by_output=False), "of one giver and taker"
+            rows, words = self.gather_rows(interfaces, side, by_output=False), "of one giver and taker"
         if self.folds and len(rows) > _MAX_ROWS:
             rows, words = self._join_by_partner(rows), "of one partner"
         if words:
@@ -195,10 +199,10 @@ class SpreadWriter:
         )
         verb = "gives" if side == 0 else "takes"
         anchor = f"table:{verb}/{partner.id}"
-        cells = tuple(self._write_flow(row, side) for row in rows)
+        cells = tuple(self.write_flow(row, side) for row in rows)
         yield drop_empty_columns(Table(anchor, f"{partner.title} {verb}", columns, cells, numbered=False, dense=True))
 
-    def _gather_rows(self, interfaces: Iterable[InterfaceTerms], side: int, *, by_output: bool) -> list[_Flow]:
+    def gather_rows(self, interfaces: Iterable[InterfaceTerms], side: int, *, by_output: bool) -> list[_Flow]:
         """Return a row for each output, or for each giver with its takers."""
         rows: dict[tuple[str, ...], list[InterfaceTerms]] = {}
         for terms in interfaces:
@@ -249,7 +253,8 @@ class SpreadWriter:
             for partners, joined in by_partner.items()
         ]
 
-    def _write_flow(self, row: _Flow, side: int) -> tuple[Inlines, ...]:
+    def write_flow(self, row: _Flow, side: int) -> tuple[Inlines, ...]:
+        """Return the cells of a row."""
         architecture = self.lookup.architecture
         partners = (inline_text.join_inlines(inline_text.partner_link(architecture, each) for each in row.partners),)
         what = join_first(list(row.types), 2)
@@ -279,7 +284,7 @@ class SpreadWriter:
         more = f" +{len(component_ids) - 1}" if len(component_ids) > 1 else ""
         return (Text(f"{title}{more}", muted=True),)
 
-    def list_deadline_blocks(self, partner: Partner) -> Iterator[Block]:
+    def list_deadline_blocks(self, partner: Partner) -> Iterator[Table]:
         """Yield the deadlines that rest on a partner, with its share."""
         architecture, timing = self.lookup.architecture, self.lookup.timing
         rows = []
@@ -384,7 +389,7 @@ class SpreadWriter:
         for (chip, sentence), partners in shared.items():
             yield inline_text.owner_links(self.lookup.architecture, partners), chip, sentence
 
-    def list_impact_blocks(self, partner: Partner) -> Iterator[Block]:
+    def list_impact_blocks(self, partner: Partner) -> Iterator[Paragraph]:
         """Say what rests on a partner: deadlines, requirements that nobody else serves, use cases, who reads from it."""
         lookup = self.lookup
         own = {component.id for component in self.components.get(partner.id, ())}
@@ -444,7 +449,7 @@ class SpreadWriter:
 def head_part(title: str, blocks: Iterable[Block]) -> Iterator[Block]:
     """Yield the blocks of a part of a spread below its title; nothing for none."""
     for index, block in enumerate(blocks):
-        if not index:
+        if title and not index:
             yield Paragraph(inline_text.to_inlines(Text(title, strong=True)))
         yield block
 

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 from archgen.frozen import replace
 from archgen.model.architecture import Partner
+from archgen.model.selector_evaluation import list_needs
 from archgen.views import inline_text
 from archgen.views.agreement.exchange_tables import PartnerExchange
 from archgen.views.lookup import Lookup
@@ -40,7 +41,7 @@ def make_reliance_pages(
     """Make two pages for each partner who owns components. Of a part of the project nothing is said."""
     if lookup.scope.components is not None:
         return
-    needs = partner_impact.list_needs(lookup.architecture)
+    needs = list_needs(lookup.architecture)
     for partner in lookup.architecture.partners.values():
         late = partner_impact.find_parts_of(lookup, partner)
         if not late.components:
@@ -97,7 +98,7 @@ def _move_blocks(section: Section, page_anchor: str) -> tuple[list[Block], str]:
 def make_milestone_table(lookup: Lookup) -> Table | None:
     """List the milestones by their days: what each needs, whose that is, and how many nodes of it are planned."""
     architecture = lookup.architecture
-    needs = partner_impact.list_needs(architecture)
+    needs = list_needs(architecture)
     rows = []
     for each in needs:
         owners = dict.fromkeys(owner for name in each.components for owner in architecture.components[name].owners)

@@ -9,6 +9,7 @@ from archgen.frozen import dataclass, replace
 from archgen.model.architecture import Architecture
 from archgen.model.node import Node
 from archgen.views import inline_text
+from archgen.views.agreement.exchange_tables import list_unsettled
 from archgen.views.elements.functional_level import make_component_table
 from archgen.views.elements.implementation_level import make_node_blocks
 from archgen.views.lookup import Lookup
@@ -188,7 +189,11 @@ class PageMaker:
 
     def make_node_page(self, node: Node) -> Page:
         """Make the page of a node."""
-        sections = (*make_flow_sections(self.lookup, node), *self._finding_sections(node.id, *node.implements))
+        unsettled = list_unsettled(self.lookup, node.implements)
+        sections = (
+            *make_flow_sections(self.lookup, node, unsettled),
+            *self._finding_sections(node.id, *node.implements),
+        )
         section = Section(f"node:{node.id}", node.id, make_node_blocks(self.lookup, node), sections)
         kinds = ", ".join(inline_text.NODE_KIND_WORDS[kind] for kind in node.kinds)
         lead = self._lead_with_owners(

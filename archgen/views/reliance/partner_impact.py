@@ -8,11 +8,11 @@ from collections.abc import Collection, Iterable, Iterator, Sequence
 from typing import Literal
 
 from archgen.frozen import dataclass, replace
-from archgen.model.architecture import Architecture, Milestone, Partner
+from archgen.model.architecture import Partner
 from archgen.model.component import Component
 from archgen.model.partner_interfaces import components_at_ends, foreign_owners
 from archgen.model.requirement import Requirement
-from archgen.model.selector_evaluation import SelectorEvaluator
+from archgen.model.selector_evaluation import MilestoneNeeds, list_needs
 from archgen.model.step_connections import ConnectedStep
 from archgen.timing.analysis import ChainResult
 from archgen.timing.figures.timing_values import TimingValue, sum_bounds
@@ -100,14 +100,6 @@ class WaitingPartner:
 
 
 @dataclass(frozen=True, slots=True)
-class MilestoneNeeds:
-    """A milestone with the leaves that it needs, by complete ids in the order of the architecture."""
-
-    milestone: Milestone
-    components: tuple[str, ...]
-
-
-@dataclass(frozen=True, slots=True)
 class PartnerImpact:
     """All that rests on what is late. `interfaces` are in the order in which to settle them."""
 
@@ -165,18 +157,6 @@ def make_parts(lookup: Lookup, component_ids: Iterable[str], partner: Partner | 
         activities += [each.id for each in list_activities(lookup, nodes)]
     owners = {owner: None for leaf in leaves for owner in architecture.components[leaf].owners}
     return LateParts(partner, frozenset(leaves), frozenset(activities), (partner.id,) if partner else tuple(owners))
-
-
-def list_needs(architecture: Architecture) -> tuple[MilestoneNeeds, ...]:
-    """Return what the milestones need, by their days; those without one come last."""
-    evaluator = SelectorEvaluator(architecture)
-    found = []
-    for milestone in architecture.milestones.values():
-        selection, _ = evaluator.evaluate(milestone.needs) if milestone.needs else (None, ())
-        nodes = [architecture.nodes[name] for name in architecture.nodes if selection and name in selection.nodes]
-        needed = {*(selection.components if selection else ()), *(name for node in nodes for name in node.implements)}
-        found.append(MilestoneNeeds(milestone, tuple(name for name in architecture.components if name in needed)))
-    return tuple(sorted(found, key=lambda each: (each.milestone.date is None, each.milestone.date or "")))
 
 
 def find_impact(

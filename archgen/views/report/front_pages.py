@@ -33,6 +33,7 @@ from archgen.views.shapes import (
 from archgen.views.timing import timing_verdicts
 from archgen.views.timing.timing_tables import is_blank
 
+_MAX_PARTNERS = 24
 _SIGNS = (
     ("in, out", "a port that reads, a port that writes"),
     ("nobody yet, outside", "who reads an output: no component, or somebody outside of the system"),
@@ -98,9 +99,12 @@ def describe_progress(lookup: Lookup) -> str:
 
 
 def make_partner_table(lookup: Lookup, *, has_chapter: bool = False) -> Table | None:
-    """List the partners with what they are and what they own, for the title page; those with a chapter are linked to it."""
+    """List the partners with what they are and what they own, for the title page; those with a chapter are linked to it.
+
+    With a chapter there is none of more partners than the page has room for: the chapter begins with such a table.
+    """
     architecture = lookup.architecture
-    if not architecture.partners:
+    if not architecture.partners or (has_chapter and len(architecture.partners) > _MAX_PARTNERS):
         return None
     counts = {row.id: row.components for row in measure_progress(architecture) if row.scope == "partner"}
     rows = tuple(

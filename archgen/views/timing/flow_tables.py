@@ -1,29 +1,34 @@
-"""What an element takes in and gives out, a row a flow; its chains, the time left to it, what no chain says; who reads it.
+"""What an element takes in and gives out, a row a flow; its chains, the time left to it, what no chain says; whom to talk to.
 
 Site, cards and documents read the same rows.
 """
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterable, Iterator, Sequence
+from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from fractions import Fraction
+from types import MappingProxyType
 
 from archgen.diagnostics import join_words, order_naturally
 from archgen.frozen import NamedTuple
 from archgen.model.component import Component
 from archgen.model.element_ids import make_id, make_unique_id
-from archgen.model.node import Node
+from archgen.model.node import Endpoint, Node
 from archgen.timing.analysis import ChainResult, ChainTerm
 from archgen.timing.chains.chain_advice import sum_known_parts
 from archgen.timing.chains.element_flows import ElementFlow, UnjudgedWay
 from archgen.timing.figures.tick_unit import NS_PER_SECOND
 from archgen.timing.figures.timing_values import TimingValue, sum_bounds, sum_fractions
+from archgen.timing.rates.link_traffic import find_sending_rate
 from archgen.timing.system.timing_system import Activity
 from archgen.views import element_references, inline_text
 from archgen.views.lookup import Lookup
 from archgen.views.shapes import Block, Bullets, Inlines, Markdown, Paragraph, Section, Table, Text, make_columns
 from archgen.views.timing import chain_status, timing_tables, value_format
 from archgen.views.timing.timing_lookup import TimingLookup
+
+_PARTNER_VERBS = (("gives", "takes"), ("calls", "answers"))
+"""What another partner does with what comes in and goes out: with data, and with calls."""
 
 
 class FlowRow(NamedTuple):
@@ -81,17 +86,18 @@ def _make_row(lookup: Lookup, timing_lookup: TimingLookup, flow: ElementFlow, *,
     own, other = (arc.target, arc.source) if is_taken else (arc.source, arc.target)
     pace = flow.pace
     is_data = arc.role == "data"
+    rate = pace.rate if is_data else find_sending_rate(timing_lookup.analysis, arc)
     output = lookup.architecture.outputs.get(arc.output)
     return FlowRow(
         _port_name(arc.input if is_taken else arc.output),
         _describe_end(lookup, timing_lookup, own, other, arc.link),
-        _describe_topic(lookup, arc.topic),
-        timing_tables.figure_cell(value_format.display_rate(pace.rate), pace.rate) if is_data else (),
+        _describe_topic(lookup, arc.topic, _find_endpoint(lookup, flow, timing_lookup, is_taken=is_taken)),
+        timing_tables.figure_cell(value_format.display_rate(rate), rate),
         timing_tables.duration_cell(pace.gap) if is_data else (),
         timing_tables.duration_cell(flow.age) if is_data else (),
         timing_tables.duration_cell(flow.since_sensing) if is_data else (),
         timing_tables.duration_cell(sum_bounds((flow.since_sensing, flow.wait))) if is_data else (),
-        _describe_reading(flow),
+        _describe_reading(timing_lookup, flow),
         inline_text.join_inlines(_link_chain(lookup, chain) for chain in flow.chains),
         inline_text.type_link(output.type) if output and output.type else (),
     )
@@ -118,7 +124,18 @@ def _describe_end(lookup: Lookup, timing_lookup: TimingLookup, own_id: str, othe
     return inline_text.join_lines(((name,), inline_text.join_inlines(notes, " · ")))
 
 
-def _describe_topic(lookup: Lookup, topic_name: str) -> Inlines:
+def _find_endpoint(
+    lookup: Lookup, flow: ElementFlow, timing_lookup: TimingLookup, *, is_taken: bool
+) -> Endpoint | None:
+    """Return the element's own end of a flow."""
+    own_id, key = (flow.arc.target, flow.arc.input) if is_taken else (flow.arc.source, flow.arc.output)
+    ends = lookup.endpoints_of.get(timing_lookup.analysis.system.activities[own_id].node, ())
+    fitting = [end for end in ends if key in {end.port, end.name} and end.name == flow.arc.topic]
+    return fitting[0] if fitting else None
+
+
+def _describe_topic(lookup: Lookup, topic_name: str, endpoint: Endpoint | None) -> Inlines:
+    """Return a topic, its message, and the quality of service of one end below one another."""
     topic = lookup.architecture.topics.get(topic_name)
     if topic is None:
         return (Text(topic_name, code=True),)
@@ -126,13 +143,20 @@ def _describe_topic(lookup: Lookup, topic_name: str) -> Inlines:
     size = lookup.format_size(topic).partition(" (")[0] if topic.flow == "topic" else ""
     if messages and size not in {"", "unknown"}:
         messages = (*messages, Text(f" {size}", muted=True))
-    return inline_text.join_lines(((inline_text.topic_link(topic_name),), messages))
+    qos = inline_text.format_qos_cell(endpoint) if endpoint else ()
+    return inline_text.join_lines(filter(None, ((inline_text.topic_link(topic_name),), messages, qos)))
 
 
-def _describe_reading(flow: ElementFlow) -> str:
+def _describe_reading(timing: TimingLookup, flow: ElementFlow) -> str:
     """Say whether a flow fires its reader or is read when that works, and what is left out or read again."""
     if flow.arc.role == "request":
-        return "called"
+        answer = timing.analysis.services.get(flow.arc.target)
+        is_known = answer is not None and answer.worst.value is not None
+        return (
+            f"called; worked off within {value_format.display_duration(answer.worst)}"
+            if answer and is_known
+            else "called"
+        )
     fit = flow.fit
     words = ["triggers" if flow.triggers else "sampled"]
     if fit and fit.loss.value:
@@ -312,7 +336,9 @@ def list_flow_lines(lookup: Lookup, element: Node | Component) -> Iterator[tuple
             for way, text in list_unjudged_lines(lookup, activities)
         ),
     )
-    yield "what rests on it", tuple(map(_read, list_reliance(lookup, element)))
+    yield "what rests on it", tuple(map(_read, element_references.list_reliance(lookup, element)))
+    partners = make_partner_bullets(lookup, activities)
+    yield "who to talk to", tuple(map(_read, partners.items)) if partners else ()
 
 
 def _write_chain(result: ChainResult, first: ChainTerm, own_time: Fraction) -> str:
@@ -375,70 +401,26 @@ def list_time_left(lookup: Lookup, activities: Sequence[Activity]) -> Iterator[I
             yield (*name, Text("nothing that is written limits it"))
 
 
-def list_reliance(lookup: Lookup, element: Node | Component, max_names: int = 8) -> Iterator[Inlines]:
-    """Yield who reads from an element, and who reads from those; who can do without it, and who waits for its start."""
-    architecture = lookup.architecture
-    components = architecture.components
-    own, nodes = (
-        (element.implements, ())
-        if isinstance(element, Node)
-        else (architecture.leaves_of(element.id), lookup.nodes_inside(element.id))
-    )
-    started = {element.id, *own, *(node.id for node in nodes)}
-    fed = lookup.find_fed(own)
-    inputs = [
-        architecture.inputs[connection.input]
-        for name in own
-        for output in components[name].outputs.values()
-        for connection in lookup.readers_of.get(output.id, ())
-    ]
-    needing = {port.component for port in inputs if not port.optional}
-    free = dict.fromkeys(port.component for port in inputs if port.component in fed)
-    groups = {
-        "Read from it": [name for name, steps in fed.items() if steps == 1],
-        "Read from those": [name for name, steps in fed.items() if steps > 1],
-        "Can do without it": [name for name in free if name not in needing],
-        "Wait for it at the start": [
-            each.id
-            for each in architecture.nodes.values()
-            if each.start and not started.isdisjoint(each.start.list_awaited())
-        ],
-    }
-    for words, names in groups.items():
-        # Of a thousand only those that are named need a link.
-        links = [
-            (
-                inline_text.component_link(components[each])
-                if each in components
-                else Text(each, f"node:{each}", code=True),
-            )
-            for each in names[:max_names]
-        ]
-        more = f" and {len(names) - max_names} more" if len(names) > max_names else ""
-        if names:
-            yield inline_text.to_inlines(f"{words} ({len(names)}): ", *inline_text.join_inlines(links), more)
-    if fed:
-        command = " ".join(("archgen impact", *(f"--component {name}" for name in own)))
-        yield (Text(command, code=True), Text(" says which deadlines, use cases and requirements rest on it"))
-
-
-def make_partner_bullets(lookup: Lookup, activities: Sequence[Activity]) -> Bullets | None:
-    """List the other partners with what passes between them and an element: whom to talk to."""
+def make_partner_bullets(
+    lookup: Lookup, activities: Sequence[Activity], unsettled: Mapping[str, Inlines] = MappingProxyType({})
+) -> Bullets | None:
+    """List the other partners with what passes between them and an element: whom to talk to, and of what that is unsettled."""
     architecture = lookup.architecture
     all_activities = lookup.timing.analysis.system.activities if lookup.timing else {}
     own = {owner for each in activities for owner in element_references.list_node_owners(architecture, each.node)}
-    ports: dict[str, tuple[dict[str, None], dict[str, None]]] = {}
+    ports: dict[str, dict[str, dict[str, None]]] = {}
     for side, flows in enumerate(_list_flows(lookup, activities)):
         for flow in flows:
             other, port = (flow.arc.target, flow.arc.output) if side else (flow.arc.source, flow.arc.input)
             for owner in element_references.list_node_owners(architecture, all_activities[other].node):
                 if owner not in own:
-                    ports.setdefault(owner, ({}, {}))[side][_port_name(port)] = None
+                    verb = _PARTNER_VERBS[flow.arc.role == "request"][side]
+                    ports.setdefault(owner, {}).setdefault(verb, {})[_port_name(port)] = None
     items = []
     for owner in sorted(ports, key=order_naturally):
-        given, taken = ports[owner]
-        verbs = ("gives", given), ("takes", taken)
-        words = " and ".join(f"{verb} {join_words([f'`{each}`' for each in names])}" for verb, names in verbs if names)
+        words = join_words(
+            [f"{verb} {join_words([f'`{each}`' for each in names])}" for verb, names in ports[owner].items()]
+        )
         items.append(
             (
                 *inline_text.owner_links(architecture, (owner,)),
@@ -448,18 +430,24 @@ def make_partner_bullets(lookup: Lookup, activities: Sequence[Activity]) -> Bull
                     if (known := architecture.partners.get(owner)) and known.contact
                     else ()
                 ),
+                *unsettled.get(owner, ()),
             )
         )
     return Bullets(tuple(items)) if items else None
 
 
-def make_flow_sections(lookup: Lookup, element: Node | Component) -> list[Section]:
+def make_flow_sections(
+    lookup: Lookup, element: Node | Component, unsettled: Mapping[str, Inlines] = MappingProxyType({})
+) -> list[Section]:
     """Return the sections on the page of an element about what passes through it, its time, and who relies on it."""
     name, title = element.id, element.id if isinstance(element, Node) else element.title
     activities = list_own_activities(lookup, element)
     chains = make_chain_share_table(lookup, name, title, activities)
-    partners = make_partner_bullets(lookup, activities)
-    time_left, reliance = tuple(list_time_left(lookup, activities)), tuple(list_reliance(lookup, element))
+    partners = make_partner_bullets(lookup, activities, unsettled)
+    time_left, reliance = (
+        tuple(list_time_left(lookup, activities)),
+        tuple(element_references.list_reliance(lookup, element)),
+    )
     unwritten = (
         Paragraph(inline_text.to_inlines("No execution time is written. What is left to it:")),
         Bullets(time_left),

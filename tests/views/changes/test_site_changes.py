@@ -179,3 +179,33 @@ groups:
     assert sorted(pages) == ["g.eye.same", "g.eye.seen"]
     assert changed == ["g.eye.seen"]
     assert "Seen Heard" in pages["g.eye.seen"]
+
+
+def test_a_page_tells_what_its_node_does_otherwise_and_what_comes_from_others_otherwise(tmp_path: Path) -> None:
+    old = """\
+archgen: 1
+partners: {p: {title: Giver}, q: {title: Taker}}
+types: {Seen: std_msgs/msg/Bool}
+groups: {g: {components: {eye: {owner: p, outputs: {seen: Seen, more: Seen}}, brain: {owner: q, inputs: {seen: eye.seen, more: eye.more}}}}}
+hosts: {h: {cores: 2}}
+nodes:
+  eye: {implements: eye, host: h, timing: {rate: 20 Hz, wcet: 1 ms}, publishes: {seen: {topic: /seen, qos: {depth: 2}}}}
+  brain: {implements: brain, host: h, timing: {rate: 10 Hz, wcet: 3 ms, core: 1, priority: 80}}
+"""
+    root = repositories.repository(tmp_path / "robot", {"archgen.yaml": old})
+    (root / "archgen.yaml").write_text(old.replace("depth: 2", "depth: 5").replace("20 Hz", "5 Hz"))
+    result = CliRunner().invoke(main, ["site", str(root), "-o", str(tmp_path / "site"), "--since", "HEAD"])
+    assert result.exit_code == 0, result.output
+    pages = {
+        name: text_of(read(tmp_path / "site", f"{name}.html"))
+        for name in ("components/g.eye", "nodes/eye", "components/g.brain", "nodes/brain")
+    }
+    for name in ("components/g.eye", "nodes/eye"):
+        assert "port seen · qos depth: 2 depth: 5" in pages[name]
+        assert "What comes to it otherwise" not in pages[name]
+    for name in ("components/g.brain", "nodes/brain"):
+        words = "What comes to it otherwise since HEAD g.eye.seen from Giver to Taker"
+        assert words in pages[name]
+        assert "Giver gives seen and more · it is owed QoS offered of Eye · more" in pages[name]
+    assert "it owes QoS offered of Eye · more" in pages["nodes/eye"]
+    assert "execution up to 3 ms; priority 80; core 1" in pages["components/g.brain"]

@@ -191,6 +191,26 @@ def test_many_flows_are_told_together_and_the_workbook_has_each(tmp_path: Path) 
     assert len("".join(list_texts(make_deliverable(views.lookup, edition).sections[-1]))) < 12_000
 
 
+def test_of_many_partners_those_that_have_little_share_pages(tmp_path: Path) -> None:
+    _BENCHMARK.generate(40, tmp_path, _BENCHMARK.Amounts(partners=13, chains=2))
+    checked = pipeline.check_project(tmp_path)
+    views = make_views(checked, OutputOptions(show_history=False), undrawn_kinds=("component",), is_report_alone=True)
+    short, whole = (make_partner_chapter(views.lookup, folds=folds) for folds in (True, False))
+    assert short is not None
+    assert whole is not None
+    rows = {}
+    for chapter in (short, whole):
+        for section in chapter.sections:
+            flows = [table for table in _tables(section) if table.kind in {"table:flows", "table:gives", "table:takes"}]
+            rows[chapter is short, section.title] = sum(len(table.rows) for table in flows)
+    for section in short.sections:
+        assert rows[True, section.title] == rows[False, section.title] > 0, "each flow is told in both forms"
+        assert len(_tables(section)) <= 2, "what flows, and what is still to be settled"
+    first = "\n".join(list_texts(short.sections[0]))
+    assert re.search(r"\d components in .*: Component 0\.0, ", first)
+    assert re.search(r"It rests on Partner 0: .* Deadlines: Chain 0 \(.* are its own, deadline 1000 ms: missed\)", first)
+
+
 @pytest.mark.parametrize(
     "source",
     [

@@ -10,6 +10,7 @@ import yaml
 
 from archgen import pipeline
 from archgen.model.element_ids import is_id
+from archgen.views.element_references import list_reliance
 from archgen.views.elements.element_card import make_card
 from archgen.views.lookup import Lookup, make_lookup
 from archgen.views.pages.report_outline import DocumentEdition
@@ -20,7 +21,6 @@ from archgen.views.timing.flow_tables import (
     list_activities,
     list_flow_rows,
     list_own_activities,
-    list_reliance,
     list_time_left,
     make_flow_sections,
     make_unjudged_blocks,
@@ -61,9 +61,59 @@ def test_a_row_says_who_gives_it_how_old_it_is_and_what_rests_on_it(tmp_path: Pa
     assert given == []
     cells = [[_read(cell) if isinstance(cell, tuple) else cell for cell in row] for row in taken]
     assert cells == [
-        ["picture", "Camera / Partner P · by Cable", "/see/camera/picture / sensor_msgs/msg/Image", "50 Hz", "22 ms", "6 ms", "6 ms", "107 ms", "sampled; 80 % never read", "Sees and stops 400 ms", "Image"],
-        ["pose", "Odometry / same host", "/act/odometry/pose / geometry_msgs/msg/Pose 60 B", "100 Hz", "16 ms", "6 ms", "6 ms", "107 ms", "sampled; 90 % never read; up to 12 may wait, the queue holds 10", "", "Pose"],
+        ["picture", "Camera / Partner P · by Cable", "/see/camera/picture / sensor_msgs/msg/Image / default: reliable, depth 10", "50 Hz", "22 ms", "6 ms", "6 ms", "107 ms", "sampled; 80 % never read", "Sees and stops 400 ms", "Image"],
+        ["pose", "Odometry / same host", "/act/odometry/pose / geometry_msgs/msg/Pose 60 B / default: reliable, depth 10", "100 Hz", "16 ms", "6 ms", "6 ms", "107 ms", "sampled; 90 % never read; up to 12 may wait, the queue holds 10", "", "Pose"],
     ]  # fmt: skip
+
+
+CALLS = """\
+partners: {p: Partner P, q: {title: Partner Q, contact: mia@q.example}}
+groups:
+  see: {owner: p, components: {asker: {inputs: {answer: server.answer}}}}
+  act: {owner: q, components: {server: {outputs: {answer: Answer}}}}
+types: {Answer: std_srvs/srv/Trigger}
+milestones: {trial: {title: First trial, date: "2027-03-01", needs: "owner:q"}, other: {needs: asker}}
+nodes:
+  asker: {implements: asker, host: h, timing: {rate: 10 Hz, wcet: 2 ms, calls: {answer: 1/5}}}
+  server: {implements: server, host: h, timing: {wcet: 5 ms}}
+hosts: {h: {cores: 2}}
+"""
+
+
+def test_a_server_is_told_how_often_it_is_called_within_what_time_and_by_whom(tmp_path: Path) -> None:
+    lookup = _look_up(tmp_path, CALLS)
+    (row,), given = list_flow_rows(lookup, list_activities(lookup, (lookup.architecture.nodes["server"],)))
+    assert given == []
+    assert (_read(row.rate), row.reading) == ("2 Hz", "called; worked off within 5 ms")
+    lists = {name: dict(make_card(lookup, "node", name).lists) for name in ("asker", "server")}
+    assert lists["server"]["who to talk to"] == ("Partner P calls answer",)
+    assert lists["asker"]["who to talk to"] == ("Partner Q answers answer · mia@q.example",)
+
+
+def test_it_is_said_by_when_an_element_is_needed(tmp_path: Path) -> None:
+    lookup = _look_up(tmp_path, CALLS)
+    said = {
+        name: [
+            _read(line)
+            for line in list_reliance(lookup, lookup.architecture.components[name])
+            if "Needed" in _read(line)
+        ]
+        for name in ("act.server", "see.asker")
+    }
+    assert said == {"act.server": ["Needed for First trial on 2027-03-01"], "see.asker": ["Needed for Other"]}
+
+
+def test_the_quality_of_service_is_that_of_the_elements_own_end(tmp_path: Path) -> None:
+    text = ROBOT.replace(
+        "timing: {rate: 50 Hz, wcet: 2 ms}}",
+        "timing: {rate: 50 Hz, wcet: 2 ms}, publishes: {picture: {topic: /picture, qos: {depth: 3}}}}",
+    )
+    lookup = _look_up(tmp_path, text)
+    ends = {}
+    for name, side in (("camera", 1), ("stop", 0)):
+        rows = list_flow_rows(lookup, list_activities(lookup, (lookup.architecture.nodes[name],)))[side]
+        ends[name] = [_read(row.topic).rpartition(" / ")[2] for row in rows if row.port == "picture"]
+    assert ends == {"camera": ["default: reliable, depth 3"], "stop": ["default: reliable, depth 10"]}
 
 
 def test_a_sensor_of_two_nodes_begins_with_the_first_one(tmp_path: Path) -> None:
