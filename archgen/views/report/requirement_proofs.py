@@ -31,15 +31,17 @@ def make_requirements(lookup: Lookup) -> Iterator[Section]:
     shown = shown[:_MAX_REQUIREMENTS]
     served = [each for each in requirements if requirement_servers.is_served(lookup, each)]
     lead = f"{len(served)} of {len(requirements)} are served. Those that nobody serves stand first, then those without proof."
-    if len(shown) < len(ranked):
+    if not shown:
+        lead = f"All {len(requirements)} are served and met. The workbook says what proves each."
+    elif len(shown) < len(ranked):
         lead += f" The other {len(ranked) - len(shown)} stand in the workbook."
     rows = tuple(_trace_requirement(lookup, each) for each in shown)
     columns = make_columns(
         ("Id", 0.5), ("Requirement", 2.6), ("By, components", 1.4), ("Use cases", 0.9), ("Proof", 1.7)
     )
     table = Table("table:requirements", "Requirements", columns, rows, numbered=False, dense=True)
-    blocks = (Paragraph(inline_text.to_inlines(lead)), drop_empty_columns(table))
-    yield Section("page:requirements", "Requirements, and what proves them", blocks, page_break=True)
+    blocks = (Paragraph(inline_text.to_inlines(lead)), *((drop_empty_columns(table),) if rows else ()))
+    yield Section("page:requirements", "Requirements, and what proves them", blocks, page_break=bool(rows))
 
 
 def _judge(lookup: Lookup, requirement: Requirement) -> str:

@@ -192,6 +192,27 @@ def test_many_flows_are_told_together_and_the_workbook_has_each(tmp_path: Path) 
     assert len("".join(list_texts(make_deliverable(views.lookup, edition).sections[-1]))) < 12_000
 
 
+def test_where_each_of_many_requirements_is_met_no_page_is_left_empty(tmp_path: Path) -> None:
+    text = "\n".join(
+        (
+            "hosts: {h: {cores: 1}}",
+            "groups: {g: {components: {a: {inputs: {l: {external: x, medium: physical}}, outputs: {o: X}, requirements: [",
+            ", ".join(f"R-{at}" for at in range(101)),
+            "]}, b: {inputs: {o: a.o}}}}}",
+            "nodes: {a: {implements: a, host: h, timing: {rate: 9 Hz, wcet: 1 ms}}, b: {implements: b, host: h, timing: {rate: 9 Hz, wcet: 1 ms}}}",
+            "requirements:",
+            *(f"  R-{at}: {{title: Thing {at}}}" for at in range(101)),
+            f"chains: {{c: {{through: [a, b], deadline: 1 s, requirements: [{', '.join(f'R-{at}' for at in range(101))}]}}}}",
+        )
+    )
+    (tmp_path / "archgen.yaml").write_text(f"{text}\n", encoding="utf-8")
+    options = OutputOptions(show_history=False, document="deliverable")
+    section = _find(ProductInputs(pipeline.check_project(tmp_path), options).printed_report, "page:requirements")
+    assert list(list_texts(section))[-1:] == ["All 101 are served and met. The workbook says what proves each."]
+    assert not _tables(section)
+    assert not section.page_break
+
+
 def test_of_many_partners_those_that_have_little_share_pages(tmp_path: Path) -> None:
     _BENCHMARK.generate(40, tmp_path, _BENCHMARK.Amounts(partners=13, chains=2))
     checked = pipeline.check_project(tmp_path)
@@ -211,7 +232,9 @@ def test_of_many_partners_those_that_have_little_share_pages(tmp_path: Path) -> 
     assert [writer and {is_short(writer, each) for each in writer.partners} for writer in writers] == [{True}, {False}]
     first = "\n".join(list_texts(short.sections[0]))
     assert re.search(r"\d components in .*: Component 0\.0, ", first)
-    assert re.search(r"It rests on Partner 0: .* Deadlines: Chain 0 \(.* are its own, deadline 1000 ms: missed\)", first)
+    assert re.search(
+        r"It rests on Partner 0: .* Deadlines: Chain 0 \(.* are its own, deadline 1000 ms: missed\)", first
+    )
 
 
 @pytest.mark.parametrize(
