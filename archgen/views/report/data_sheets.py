@@ -185,8 +185,10 @@ def _list_flow_tables(
     taken, given = (group_pairs((row.port, row) for row in each) for each in rows)
     for kind, own, other in (("input", taken, given), ("output", given, taken)):
         ports = component.inputs if kind == "input" else component.outputs
+        others = component.outputs if kind == "input" else component.inputs
         crossing = {name: other.pop(name) for name in ports if name in other and name not in own}
-        if table := _make_flow_table(lookup, component, kind, own | crossing):
+        staying = {name: each for name, each in own.items() if name in ports or name not in others}
+        if table := _make_flow_table(lookup, component, kind, staying | crossing):
             yield table
 
 

@@ -172,6 +172,8 @@ def test_each_component_has_a_sheet_with_all_its_ports(views: ProjectViews) -> N
         component = architecture.components[section.subject]
         tables = [table for table in _tables(section) if table.kind in {"table:inputs", "table:outputs"}]
         shown = {_read(row[0]) for table in tables for row in table.rows}
+        ports = [_read(row[0]) for table in tables for row in table.rows if _read(row[0]) in component.outputs]
+        assert len(ports) == len(set(ports)), f"{section.title}: what is called stands at its port alone"
         assert {*component.inputs, *component.outputs} <= {name.split(" ")[0] for name in shown}, section.title
     numbers = [number for each in number_sheets(views.lookup).values() for number, _ in each]
     assert len(numbers) == len(set(numbers)) == len(sheets)
