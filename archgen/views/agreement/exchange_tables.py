@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections import defaultdict
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 
 from archgen.diagnostics import join_words
@@ -62,14 +61,27 @@ def gather_exchanges(lookup: Lookup) -> tuple[PartnerExchange, ...]:
 
 def list_unsettled(lookup: Lookup, component_ids: Iterable[str]) -> Mapping[str, Inlines]:
     """Return by partner, in words, which terms of what components give him and take from him are still open."""
-    own, words = set(component_ids), defaultdict[str, list[str]](list)
-    for exchange in gather_exchanges(lookup):
-        for terms in exchange.interfaces if exchange.open_count else ():
-            ends = components_at_ends(lookup.architecture, terms.interface)
-            for verb, end, other in zip(("it owes", "it is owed"), ends, reversed(terms.interface.pair), strict=True):
-                if terms.open_terms and any(each.id in own for each in end):
-                    words[other].append(f"{verb} {join_words(terms.open_terms)} of {terms.title}")
+    index = _index_open_terms(lookup)
+    words = group_pairs(pair for each in component_ids for pair in index.get(each, ()))
     return {partner: (Text(f" · {'; '.join(dict.fromkeys(all_words))}"),) for partner, all_words in words.items()}
+
+
+@remember_latest
+def _index_open_terms(lookup: Lookup) -> Mapping[str, Sequence[tuple[str, str]]]:
+    """Return by component the other partners of its interfaces with open terms, each with a phrase about these."""
+    return group_pairs(
+        (component.id, (other, f"{verb} {join_words(terms.open_terms)} of {terms.title}"))
+        for exchange in gather_exchanges(lookup)
+        for terms in exchange.interfaces
+        if exchange.open_count and terms.open_names
+        for verb, end, other in zip(
+            ("it owes", "it is owed"),
+            components_at_ends(lookup.architecture, terms.interface),
+            reversed(terms.interface.pair),
+            strict=True,
+        )
+        for component in end
+    )
 
 
 PACE_TERMS = (RATE.key, "response")
