@@ -19,7 +19,19 @@ from archgen.emit.text_metrics import (
     split_name,
 )
 from archgen.frozen import dataclass, replace
-from archgen.views.shapes import Block, Bullets, Facts, Figure, Inlines, Markdown, Paragraph, Section, Table, Text
+from archgen.views.shapes import (
+    Block,
+    Bullets,
+    Facts,
+    Figure,
+    Inlines,
+    Markdown,
+    Paragraph,
+    Section,
+    Table,
+    Text,
+    keep_columns,
+)
 
 SLIDE_WIDTH, SLIDE_HEIGHT = 960.0, 540.0
 """In points, as all lengths here."""
@@ -311,11 +323,7 @@ def _set_table(table: Table, column: _Column) -> PlacedTable:
 def _drop_bars(table: Table) -> Table:
     """Return a table without columns of nothing but bars."""
     kept = [at for at in range(len(table.columns)) if any(run.text for row in table.rows for run in row[at])]
-    return replace(
-        table,
-        columns=tuple(table.columns[at] for at in kept or [0]),
-        rows=tuple(tuple(row[at] for at in kept or [0]) for row in table.rows),
-    )
+    return keep_columns(table, kept or [0])
 
 
 def _share_width(table: Table, column: _Column) -> list[float]:
