@@ -102,3 +102,11 @@ def test_other_kinds_tell_their_fields_and_users(lookup: Lookup) -> None:
     assert (partner["title"], partner["contact"], partner["groups"]) == ("Laboratory", "a@b.c", ("g",))
     use_case = told(make_use_case_card(lookup, lookup.architecture.use_cases["fetch"]))
     assert use_case["actors"] == "user (A user)"
+
+
+def test_a_component_says_in_what_state_its_requirements_are(tmp_path: Path) -> None:
+    text = ROBOT.replace("role: source,", "role: source, requirements: [R-1, sees well],")
+    (tmp_path / "archgen.yaml").write_text(f"{text}requirements: {{R-1: {{title: It sees}}}}\n", encoding="utf-8")
+    architecture = check_project(tmp_path).architecture
+    card = make_component_card(make_lookup(architecture), architecture.components["g.cam"])
+    assert told(card)["requirements"] == "R-1 (met); sees well"

@@ -53,7 +53,8 @@ def make_group_card(_lookup: Lookup, group: Group) -> ElementCard:
 
 def make_component_card(lookup: Lookup, component: Component) -> ElementCard:
     """Make the card of a component that holds no others."""
-    facts = _list_component_facts(component, component.role or "?", timing_words.format_short_timing(component.timing))
+    timing = timing_words.format_short_timing(component.timing)
+    facts = _list_component_facts(lookup, component, component.role or "?", timing)
     architecture = lookup.architecture
     inputs = tuple(_describe_input(lookup, port) for port in component.inputs.values())
     outputs = tuple(
@@ -75,7 +76,9 @@ def make_component_card(lookup: Lookup, component: Component) -> ElementCard:
     return ElementCard("component", component.id, component.title, component.at, known_facts(facts), lists)
 
 
-def _list_component_facts(component: Component, role: str, timing: str, way: str = "") -> list[tuple[str, str]]:
+def _list_component_facts(
+    lookup: Lookup, component: Component, role: str, timing: str, way: str = ""
+) -> list[tuple[str, str]]:
     """Return the facts that components have in common, those that hold others too."""
     type_text = component.component_type or ""
     return [
@@ -85,11 +88,17 @@ def _list_component_facts(component: Component, role: str, timing: str, way: str
         ("owner", ", ".join(component.owners) or "?"),
         ("role", role),
         ("functionality", " ".join((component.functionality or "?").split())),
-        ("requirements", "; ".join(use.text for use in component.requirements)),
+        ("requirements", "; ".join(_judge_requirement(lookup, use.text) for use in component.requirements)),
         ("timing", timing),
         ("worst way", way),
         ("tags", ", ".join(component.tags)),
     ]
+
+
+def _judge_requirement(lookup: Lookup, text: str) -> str:
+    """Return what a component names as its requirement, with the state of one that has an id."""
+    is_id = text in lookup.architecture.requirements
+    return f"{text} ({lookup.requirement_trace.judge(text)})" if is_id else text
 
 
 def _list_setting_lists(holder: Component | ComponentType) -> Iterator[tuple[str, tuple[str, ...]]]:
@@ -103,7 +112,7 @@ def _make_composed_card(lookup: Lookup, shell: Component) -> ElementCard:
     """Make the card of a component that holds components: its ports, with what stands behind them, and what is inside."""
     architecture = lookup.architecture
     way = "".join(run.text for run in make_whole_fact(lookup, shell.id))
-    facts = _list_component_facts(shell, "", timing_words.format_timing_sentence(shell.timing), way)
+    facts = _list_component_facts(lookup, shell, "", timing_words.format_timing_sentence(shell.timing), way)
     inputs = tuple(
         f"{_describe_input(lookup, port)} => {', '.join(architecture.shell_ports[f'input {port.id}']) or 'nobody inside'}"
         for port in shell.inputs.values()
