@@ -9,6 +9,7 @@ from itertools import islice
 from archgen.grouping import group_pairs
 from archgen.model.component import Component
 from archgen.views import inline_text
+from archgen.views.element_readers import list_reliance
 from archgen.views.elements.functional_level import (
     make_functionality_block,
     make_performance_blocks,
@@ -44,7 +45,6 @@ from archgen.views.timing.flow_tables import (
     FlowRow,
     list_activities,
     list_flow_rows,
-    list_reliance,
     list_time_left,
     make_chain_share_table,
 )

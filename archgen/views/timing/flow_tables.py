@@ -5,11 +5,13 @@ Site, cards and documents read the same rows.
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterable, Iterator, Sequence
+import functools
+from collections.abc import Callable, Collection, Iterable, Iterator, Sequence
 from fractions import Fraction
+from typing import TypeVar
 
 from archgen.diagnostics import join_words, order_naturally
-from archgen.frozen import NamedTuple
+from archgen.frozen import NamedTuple, replace
 from archgen.model.component import Component
 from archgen.model.element_ids import make_id, make_unique_id
 from archgen.model.node import Node
@@ -19,11 +21,13 @@ from archgen.timing.chains.element_flows import ElementFlow, UnjudgedWay
 from archgen.timing.figures.tick_unit import NS_PER_SECOND
 from archgen.timing.figures.timing_values import TimingValue, sum_bounds, sum_fractions
 from archgen.timing.system.timing_system import Activity
-from archgen.views import element_references, inline_text
+from archgen.views import element_readers, element_references, inline_text
 from archgen.views.lookup import Lookup
 from archgen.views.shapes import Block, Bullets, Inlines, Markdown, Paragraph, Section, Table, Text, make_columns
 from archgen.views.timing import chain_status, timing_tables, value_format
 from archgen.views.timing.timing_lookup import TimingLookup
+
+_Views = TypeVar("_Views")
 
 
 class FlowRow(NamedTuple):
@@ -150,9 +154,35 @@ def _link_chain(lookup: Lookup, chain: ChainResult) -> Inlines:
     return (Text(title, ref=f"chain:{chain.id}"), Text(" "), *timing_tables.deadline_cell(chain))
 
 
+def _remember_views(
+    make: Callable[[Lookup, Sequence[Activity]], _Views],
+) -> Callable[[Lookup, Sequence[Activity]], _Views]:
+    """Return a function that makes what it shows of activities once: the pages of a component and of its node both show it."""
+
+    @functools.wraps(make)
+    def recall_or_make(lookup: Lookup, activities: Sequence[Activity]) -> _Views:
+        if lookup.timing is None:
+            return make(lookup, activities)
+        key = make.__name__, tuple(each.id for each in activities)
+        if key not in lookup.timing.remembered:
+            lookup.timing.remembered[key] = make(lookup, activities)
+        views: _Views = lookup.timing.remembered[key]
+        return views
+
+    return recall_or_make
+
+
 def make_flow_blocks(lookup: Lookup, element_id: str, title: str, activities: Sequence[Activity]) -> Iterator[Block]:
     """Yield the tables of what an element takes in and gives out."""
+    for table in _make_flow_tables(lookup, activities):
+        yield replace(table, anchor=f"{table.anchor}/{element_id}", caption=f"{title} {table.caption}")
+
+
+@_remember_views
+def _make_flow_tables(lookup: Lookup, activities: Sequence[Activity]) -> list[Table]:
+    """Return the tables of what activities take in and give out, without the element in anchor and caption."""
     tables = zip(("in", "out"), ("takes in", "gives out"), list_flow_rows(lookup, activities), strict=True)
+    made = []
     for key, words, rows in tables:
         if rows:
             columns = make_columns(
@@ -176,8 +206,9 @@ def make_flow_blocks(lookup: Lookup, element_id: str, title: str, activities: Se
                 )
                 for row in rows
             )
-            table = Table(f"table:flows-{key}/{element_id}", f"{title} {words}", columns, cells, wide=True)
-            yield timing_tables.drop_blank_columns(table)
+            table = Table(f"table:flows-{key}", words, columns, cells, wide=True)
+            made.append(timing_tables.drop_blank_columns(table))
+    return made
 
 
 def make_chain_share_table(lookup: Lookup, element_id: str, title: str, activities: Sequence[Activity]) -> Table | None:
@@ -254,14 +285,14 @@ def _describe_unjudged(lookup: Lookup, way: UnjudgedWay) -> str:
     return f"`{port}`: {duration}{most} from what `{first}` senses until `{last}` has acted on it"
 
 
-def make_unjudged_blocks(lookup: Lookup, activities: Sequence[Activity]) -> Iterator[Block]:
-    """Yield what no chain says of the inputs of an element, and the lines that would make a chain of each."""
+@_remember_views
+def make_unjudged_blocks(lookup: Lookup, activities: Sequence[Activity]) -> tuple[Block, ...]:
+    """Return what no chain says of the inputs of an element, and the lines that would make a chain of each."""
     found = list_unjudged_lines(lookup, activities)
     if not found:
-        return
+        return ()
     lead = "On these inputs no deadline rests. What a chain from the farthest sensor would say:"
-    yield Paragraph(inline_text.to_inlines(lead))
-    yield Bullets(tuple(_link_line(lookup, text) for _, text in found))
+    said = (Paragraph(inline_text.to_inlines(lead)), Bullets(tuple(_link_line(lookup, text) for _, text in found)))
     all_activities = lookup.timing.analysis.system.activities if lookup.timing else {}
     names_by_way: dict[tuple[str, ...], str] = {}
     for way in (way for way, _ in found if way.duration is not None):
@@ -272,11 +303,13 @@ def make_unjudged_blocks(lookup: Lookup, activities: Sequence[Activity]) -> Iter
         names_by_way.setdefault(nodes, make_unique_id(name, taken_names))
     lines = [f"  {name}:\n    through: [{', '.join(nodes)}]" for nodes, name in names_by_way.items()]
     if not lines:
-        return
-    yield Paragraph(
-        inline_text.message_to_inlines("The lines that make chains of them; a `deadline` is yours to choose:")
+        return said
+    lead = "The lines that make chains of them; a `deadline` is yours to choose:"
+    return (
+        *said,
+        Paragraph(inline_text.message_to_inlines(lead)),
+        Markdown("```yaml\nchains:\n" + "\n".join(lines) + "\n```"),
     )
-    yield Markdown("```yaml\nchains:\n" + "\n".join(lines) + "\n```")
 
 
 def _link_line(lookup: Lookup, text: str) -> Inlines:
@@ -312,7 +345,7 @@ def list_flow_lines(lookup: Lookup, element: Node | Component) -> Iterator[tuple
             for way, text in list_unjudged_lines(lookup, activities)
         ),
     )
-    yield "what rests on it", tuple(map(_read, list_reliance(lookup, element)))
+    yield "what rests on it", tuple(map(_read, element_readers.list_reliance(lookup, element)))
 
 
 def _write_chain(result: ChainResult, first: ChainTerm, own_time: Fraction) -> str:
@@ -375,53 +408,7 @@ def list_time_left(lookup: Lookup, activities: Sequence[Activity]) -> Iterator[I
             yield (*name, Text("nothing that is written limits it"))
 
 
-def list_reliance(lookup: Lookup, element: Node | Component, max_names: int = 8) -> Iterator[Inlines]:
-    """Yield who reads from an element, and who reads from those; who can do without it, and who waits for its start."""
-    architecture = lookup.architecture
-    components = architecture.components
-    own, nodes = (
-        (element.implements, ())
-        if isinstance(element, Node)
-        else (architecture.leaves_of(element.id), lookup.nodes_inside(element.id))
-    )
-    started = {element.id, *own, *(node.id for node in nodes)}
-    fed = lookup.find_fed(own)
-    inputs = [
-        architecture.inputs[connection.input]
-        for name in own
-        for output in components[name].outputs.values()
-        for connection in lookup.readers_of.get(output.id, ())
-    ]
-    needing = {port.component for port in inputs if not port.optional}
-    free = dict.fromkeys(port.component for port in inputs if port.component in fed)
-    groups = {
-        "Read from it": [name for name, steps in fed.items() if steps == 1],
-        "Read from those": [name for name, steps in fed.items() if steps > 1],
-        "Can do without it": [name for name in free if name not in needing],
-        "Wait for it at the start": [
-            each.id
-            for each in architecture.nodes.values()
-            if each.start and not started.isdisjoint(each.start.list_awaited())
-        ],
-    }
-    for words, names in groups.items():
-        # Of a thousand only those that are named need a link.
-        links = [
-            (
-                inline_text.component_link(components[each])
-                if each in components
-                else Text(each, f"node:{each}", code=True),
-            )
-            for each in names[:max_names]
-        ]
-        more = f" and {len(names) - max_names} more" if len(names) > max_names else ""
-        if names:
-            yield inline_text.to_inlines(f"{words} ({len(names)}): ", *inline_text.join_inlines(links), more)
-    if fed:
-        command = " ".join(("archgen impact", *(f"--component {name}" for name in own)))
-        yield (Text(command, code=True), Text(" says which deadlines, use cases and requirements rest on it"))
-
-
+@_remember_views
 def make_partner_bullets(lookup: Lookup, activities: Sequence[Activity]) -> Bullets | None:
     """List the other partners with what passes between them and an element: whom to talk to."""
     architecture = lookup.architecture
@@ -459,7 +446,10 @@ def make_flow_sections(lookup: Lookup, element: Node | Component) -> list[Sectio
     activities = list_own_activities(lookup, element)
     chains = make_chain_share_table(lookup, name, title, activities)
     partners = make_partner_bullets(lookup, activities)
-    time_left, reliance = tuple(list_time_left(lookup, activities)), tuple(list_reliance(lookup, element))
+    time_left, reliance = (
+        tuple(list_time_left(lookup, activities)),
+        tuple(element_readers.list_reliance(lookup, element)),
+    )
     unwritten = (
         Paragraph(inline_text.to_inlines("No execution time is written. What is left to it:")),
         Bullets(time_left),
@@ -474,7 +464,7 @@ def make_flow_sections(lookup: Lookup, element: Node | Component) -> list[Sectio
             "How long it may take",
             (*((Bullets(known),) if known else ()), *(unwritten if time_left else ())),
         ),
-        ("unjudged", "What no chain says", tuple(make_unjudged_blocks(lookup, activities))),
+        ("unjudged", "What no chain says", make_unjudged_blocks(lookup, activities)),
         ("reliance", "What rests on it", (Bullets(reliance),) if reliance else ()),
         ("partners-of", "Who to talk to", (partners,) if partners else ()),
     ]

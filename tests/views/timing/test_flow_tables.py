@@ -10,6 +10,7 @@ import yaml
 
 from archgen import pipeline
 from archgen.model.element_ids import is_id
+from archgen.views.element_readers import list_reliance
 from archgen.views.elements.element_card import make_card
 from archgen.views.lookup import Lookup, make_lookup
 from archgen.views.pages.report_outline import DocumentEdition
@@ -20,7 +21,6 @@ from archgen.views.timing.flow_tables import (
     list_activities,
     list_flow_rows,
     list_own_activities,
-    list_reliance,
     list_time_left,
     make_flow_sections,
     make_unjudged_blocks,
