@@ -57,7 +57,7 @@ def _fold_clusters(graph: Graph, cluster_ids: set[str], max_arrows: int) -> Grap
     drawn_ids = {box.id: box.cluster if box.cluster in cluster_ids else box.id for box in graph.boxes}
     drawn_ids |= {cluster.id: cluster.id for cluster in graph.clusters}
     outer_arrows = [arrow for arrow in graph.arrows if drawn_ids[arrow.tail] != drawn_ids[arrow.head]]
-    flows_within = dict.fromkeys(cluster_ids, 0)
+    flows_within = Counter[str]()
     for arrow in graph.arrows:
         if (drawn_id := drawn_ids[arrow.tail]) == drawn_ids[arrow.head] and drawn_id in cluster_ids:
             flows_within[drawn_id] += arrow.count
