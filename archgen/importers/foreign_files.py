@@ -6,6 +6,7 @@ nothing is expanded, and nothing outside the file is asked for.
 
 from __future__ import annotations
 
+import io
 import lzma
 import struct
 import zipfile
@@ -220,6 +221,9 @@ def explain_encoding(error: LookupError | ValueError) -> XmlProblem:
 
 MAX_MODEL_BYTES = 64_000_000
 """So much is read of one file, or of all members of an archive together."""
+_MOST_UNPACKED = 40
+"""Of models packed by their tools, ten to thirty times as much comes out; of a megabyte that was made to hurt, a thousand times."""
+_ALWAYS_UNPACKED_BYTES = 4_000_000
 ZIP_BEGINNING = b"PK\x03\x04"
 ARCHIVE_DAMAGE = (
     *(zipfile.BadZipFile, zlib.error, lzma.LZMAError, RuntimeError, EOFError, ValueError, struct.error),
@@ -246,13 +250,13 @@ def read_archive_members(path: Path, endings: tuple[str, ...]) -> Iterator[tuple
 
     Names are for messages only: they may lead anywhere. Raise ForeignFileError.
     """
-    bytes_left = MAX_MODEL_BYTES
     try:
         with open_named_file(path) as file, zipfile.ZipFile(file) as archive:
+            bytes_left = most_bytes = limit_unpacked(file, MAX_MODEL_BYTES)
             for member in archive.infolist():
                 if member.filename.lower().endswith(endings):
                     with archive.open(member) as stream:
-                        data = _read_part(f"{path} [{member.filename}]", stream, bytes_left, MAX_MODEL_BYTES)
+                        data = _read_part(f"{path} [{member.filename}]", stream, bytes_left, most_bytes)
                     bytes_left -= len(data)
                     yield member.filename, data
     except ARCHIVE_DAMAGE as error:
@@ -261,6 +265,11 @@ def read_archive_members(path: Path, endings: tuple[str, ...]) -> Iterator[tuple
     except OSError as error:
         words = f"it cannot be read ({error.strerror or error})"
         raise ForeignFileError(words, Span.of_file(str(path)), "look at its rights") from None
+
+
+def limit_unpacked(archive: IO[bytes], max_bytes: int) -> int:
+    """Return how many bytes may come out of an archive, `max_bytes` at most."""
+    return min(max_bytes, max(_MOST_UNPACKED * archive.seek(0, io.SEEK_END), _ALWAYS_UNPACKED_BYTES))
 
 
 def _read_part(name: str, stream: IO[bytes], max_bytes: int, told_bytes: int) -> bytes:

@@ -2,12 +2,16 @@
 
 from __future__ import annotations
 
+import functools
+import operator
 from collections import defaultdict
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Collection, Iterable, Iterator, Mapping
+from functools import cached_property
 
 from archgen.frozen import dataclass
 from archgen.model.architecture import Architecture
 from archgen.model.component import Connection
+from archgen.model.graph_search import find_reach_masks, find_reachable
 
 
 @dataclass(frozen=True, slots=True)
@@ -29,6 +33,36 @@ def build_component_graph(architecture: Architecture) -> FlowGraph:
 def build_node_graph(architecture: Architecture) -> FlowGraph:
     """Build the graph of nodes from the topics, services and actions they use; the last two carry data both ways."""
     return _build_graph(_node_flow_pairs(architecture))
+
+
+class ComponentReach:
+    """Whom components feed in the end. Nothing is computed before somebody asks."""
+
+    def __init__(self, architecture: Architecture) -> None:
+        """Compute nothing yet."""
+        self._architecture = architecture
+
+    @cached_property
+    def _flows(self) -> FlowGraph:
+        return build_component_graph(self._architecture)
+
+    @cached_property
+    def _masks(self) -> Mapping[str, int]:
+        return find_reach_masks(self._flows.successors)
+
+    def find_fed(self, component_ids: Collection[str], enough: int | None = None) -> dict[str, int]:
+        """Return the other components that some feed in the end, nearest first, each with its number of steps.
+
+        No more than up to the step with which they are `enough`; None is all of them.
+        """
+        wanted = None if enough is None else enough + len(component_ids)
+        steps = find_reachable(self._flows.successors, component_ids, enough=wanted)
+        return {name: count for name, count in steps.items() if count}
+
+    def count_fed(self, component_ids: Collection[str]) -> int:
+        """Return how many other components some feed in the end."""
+        masks = [self._masks[name] for name in component_ids if name in self._masks]
+        return functools.reduce(operator.or_, masks, 0).bit_count() - len(masks)
 
 
 def _build_graph(pairs: Iterable[tuple[str, str]]) -> FlowGraph:

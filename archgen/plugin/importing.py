@@ -10,6 +10,7 @@ from archgen.importers.foreign_files import (
     XmlProblem,
     explain_encoding,
     explain_syntax,
+    limit_unpacked,
     parse_xml,
     read_archive_members,
     read_bounded,
@@ -44,7 +45,8 @@ __all__ += ["ImportedRequirements", "ImportedTables", "MappingNode", "ObjectAcco
 __all__ += ["ObservedEndpoint", "ObservedNode", "ObservedRobot", "ReadRecordings", "RecordedTopic"]
 __all__ += ["RecordingRefusedError", "ScalarNode", "SequenceNode", "SourceTexts", "Span", "WorkBudget", "XmlElement"]
 __all__ += ["XmlEvents", "XmlProblem", "YamlNode", "explain_encoding", "explain_syntax", "find_closest"]
-__all__ += ["find_program_name", "index_shipped_programs", "is_id", "link_slices", "load_shipped_component_types"]
+__all__ += ["find_program_name", "index_shipped_programs", "is_id", "limit_unpacked", "link_slices"]
+__all__ += ["load_shipped_component_types"]
 __all__ += ["make_camel_name", "make_id", "make_unique_id", "needs_quotes", "node_to_data", "open_named_file"]
 __all__ += ["parse_xml", "parse_yaml", "read_archive_members", "read_bounded", "resolve_scalar", "spell_in_ascii"]
 __all__ += ["title_from_id"]

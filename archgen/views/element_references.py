@@ -1,4 +1,4 @@
-"""The page that a name leads to, who owns what a finding is about, and who relies on an element."""
+"""The page that a name leads to, and who owns what a finding is about."""
 
 from __future__ import annotations
 
@@ -9,8 +9,6 @@ from archgen.language.language_tables import SECTION_KINDS
 from archgen.model.architecture import Architecture
 from archgen.model.component import Component
 from archgen.model.message_types import full_message_name
-from archgen.model.node import Node
-from archgen.model.selector_evaluation import list_needs
 from archgen.timing.chains.chain_advice import find_deciding_term
 from archgen.views import inline_text
 from archgen.views.lookup import Lookup
@@ -205,54 +203,3 @@ def place_run(lookup: Lookup, span: Span) -> Text | None:
         return None
     address = lookup.repository.file_address(span.file, span.line) if lookup.repository else None
     return Text(f"{span.file}:{span.line}", url=address, code=True, is_place=True)
-
-
-def list_reliance(lookup: Lookup, element: Node | Component, max_names: int = 8) -> Iterator[Inlines]:
-    """Yield who reads from an element, and who reads from those; who can do without it, and who waits for its start."""
-    architecture = lookup.architecture
-    components = architecture.components
-    own, nodes = (
-        (element.implements, ())
-        if isinstance(element, Node)
-        else (architecture.leaves_of(element.id), lookup.nodes_inside(element.id))
-    )
-    started = {element.id, *own, *(node.id for node in nodes)}
-    fed = lookup.find_fed(own)
-    inputs = [
-        architecture.inputs[connection.input]
-        for name in own
-        for output in components[name].outputs.values()
-        for connection in lookup.readers_of.get(output.id, ())
-    ]
-    needing = {port.component for port in inputs if not port.optional}
-    free = dict.fromkeys(port.component for port in inputs if port.component in fed)
-    groups = {
-        "Read from it": [name for name, steps in fed.items() if steps == 1],
-        "Read from those": [name for name, steps in fed.items() if steps > 1],
-        "Can do without it": [name for name in free if name not in needing],
-        "Wait for it at the start": [
-            each.id
-            for each in architecture.nodes.values()
-            if each.start and not started.isdisjoint(each.start.list_awaited())
-        ],
-    }
-    for words, names in groups.items():
-        # Of a thousand only those that are named need a link.
-        links = [
-            (
-                inline_text.component_link(components[each])
-                if each in components
-                else Text(each, f"node:{each}", code=True),
-            )
-            for each in names[:max_names]
-        ]
-        more = f" and {len(names) - max_names} more" if len(names) > max_names else ""
-        if names:
-            yield inline_text.to_inlines(f"{words} ({len(names)}): ", *inline_text.join_inlines(links), more)
-    for needs in list_needs(architecture):
-        if not set(own).isdisjoint(needs.components):
-            day = f" on {needs.milestone.date}" if needs.milestone.date else ""
-            yield (Text("Needed for "), Text(needs.milestone.title, f"milestone:{needs.milestone.id}"), Text(day))
-    if fed:
-        command = " ".join(("archgen impact", *(f"--component {name}" for name in own)))
-        yield (Text(command, code=True), Text(" says which deadlines, use cases and requirements rest on it"))

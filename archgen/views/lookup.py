@@ -15,8 +15,7 @@ from archgen.model.architecture import Architecture, Chain
 from archgen.model.component import Component, Connection, Input, Output
 from archgen.model.component_nesting import find_component, list_members, list_surrounding, list_written_connections
 from archgen.model.coordinate_frames import Frame
-from archgen.model.flow_graph import FlowGraph, build_component_graph
-from archgen.model.graph_search import find_reachable
+from archgen.model.flow_graph import ComponentReach
 from archgen.model.known_interfaces import InterfaceField
 from archgen.model.message_types import ConceptualType
 from archgen.model.node import Endpoint, Node, Topic
@@ -135,6 +134,8 @@ class Lookup:
     ends are its own."""
     nodes_of: Mapping[str, tuple[Node, ...]] = field(default_factory=dict)
     """Nodes that implement a component, by the component's id."""
+    awaiting: Mapping[str, tuple[Node, ...]] = field(default_factory=dict)
+    """Nodes that wait for an element at the start, by its id."""
     endpoints_of: Mapping[str, tuple[Endpoint, ...]] = field(default_factory=dict)
     """Endpoints of a node, by the node's id."""
     findings_of: Mapping[str, tuple[Diagnostic, ...]] = field(default_factory=dict)
@@ -161,8 +162,8 @@ class Lookup:
     # Computed when somebody asks: most views show no use case.
     steps: UseCaseSteps = field(kw_only=True, compare=False, repr=False)
     """The steps of use cases, with what they run along."""
-    component_flows: FlowGraph = field(kw_only=True, compare=False, repr=False)
-    """Which components read from which."""
+    reach: ComponentReach = field(kw_only=True, compare=False, repr=False)
+    """Which components are fed by which in the end."""
     type_texts: TypeTexts = field(kw_only=True, compare=False, repr=False)
     """Where the texts of component types are."""
     timing: TimingLookup | None = None
@@ -216,11 +217,6 @@ class Lookup:
         nodes = {node.id: node for leaf in leaves for node in self.nodes_of.get(leaf, ())}
         return tuple(nodes.values())
 
-    def find_fed(self, component_ids: Iterable[str]) -> dict[str, int]:
-        """Return the other components that some feed in the end, nearest first, each with its number of steps."""
-        steps = find_reachable(self.component_flows.successors, component_ids)
-        return {name: count for name, count in steps.items() if count}
-
     def shown_nodes(self) -> list[Node]:
         """Return the shown nodes, in order."""
         return [node for node in self.architecture.nodes.values() if self.scope.shows_node(node.id)]
@@ -263,6 +259,7 @@ def make_lookup(
         written_connections=written_connections,
         connection_positions=group_values(_list_ends(architecture, written_connections)),
         nodes_of=group_values((component, node) for node in nodes for component in node.implements),
+        awaiting=group_values((each, node) for node in nodes if node.start for each in node.start.list_awaited()),
         endpoints_of=group_values((endpoint.node, endpoint) for endpoint in architecture.list_endpoints()),
         findings_of=group_values((find_port_holder(architecture, f.element), f) for f in all_findings if f.element),
         components_for_requirement=components_for_requirement,
@@ -280,7 +277,7 @@ def make_lookup(
         group_hues={group: hue for hue, group in enumerate(architecture.groups)},
         message_size=message_sizes.make_size_query(architecture),
         steps=UseCaseSteps(architecture),
-        component_flows=build_component_graph(architecture),
+        reach=ComponentReach(architecture),
         type_texts=TypeTexts(architecture),
         timing=timing_lookup,
     )

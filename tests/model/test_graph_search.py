@@ -7,7 +7,13 @@ from itertools import combinations
 from hypothesis import given
 from hypothesis import strategies as st
 
-from archgen.model.graph_search import find_reachable, find_rings, find_strong_components, is_ring
+from archgen.model.graph_search import (
+    find_reach_masks,
+    find_reachable,
+    find_rings,
+    find_strong_components,
+    is_ring,
+)
 
 GRAPHS = st.dictionaries(st.integers(0, 9), st.lists(st.integers(0, 9), max_size=4), max_size=10).map(
     lambda given: {element: given.get(element, []) for element in range(10)}
@@ -19,6 +25,9 @@ def test_reach_counts_steps() -> None:
     assert find_reachable(neighbours, ["a"]) == {"a": 0, "b": 1, "c": 1, "d": 2}
     assert find_reachable(neighbours, ["a"], 1) == {"a": 0, "b": 1, "c": 1}
     assert find_reachable(neighbours, ["x"], 0) == {"x": 0}
+    # The step with which they are enough is taken whole.
+    assert find_reachable(neighbours, ["a"], enough=2) == {"a": 0, "b": 1, "c": 1}
+    assert find_reachable(neighbours, ["a"], enough=1) == {"a": 0}
 
 
 def test_rings_are_found_without_recursion() -> None:
@@ -51,3 +60,14 @@ def test_a_ring_is_what_leads_back_to_itself(graph: dict[int, list[int]]) -> Non
     looped = [component for component in components if component[0] in find_reachable(graph, graph[component[0]])]
     assert [component for component in components if is_ring(component, graph)] == looped
     assert sorted(find_rings(graph)) == sorted(looped)
+
+
+@given(GRAPHS)
+def test_masks_hold_what_is_reached(graph: dict[int, list[int]]) -> None:
+    masks = find_reach_masks(graph)
+    bits = {element: {at for at in range(10) if mask >> at & 1} for element, mask in masks.items()}
+    for one, other in combinations(graph, 2):
+        reached = find_reachable(graph, [one]), find_reachable(graph, [other])
+        assert len(bits[one]) == len(reached[0])
+        assert len(bits[one] | bits[other]) == len(reached[0] | reached[1])
+        assert len(bits[one] & bits[other]) == len(reached[0].keys() & reached[1].keys())

@@ -16,7 +16,15 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import IO
 
-from archgen.plugin.importing import ARCHIVE_DAMAGE, ZIP_BEGINNING, ForeignFileError, Span, XmlEvents, open_named_file
+from archgen.plugin.importing import (
+    ARCHIVE_DAMAGE,
+    ZIP_BEGINNING,
+    ForeignFileError,
+    Span,
+    XmlEvents,
+    limit_unpacked,
+    open_named_file,
+)
 
 
 @dataclass(slots=True)
@@ -67,6 +75,7 @@ class ReqifDocument:
 MAX_BYTES = 500_000_000
 """So much is read of one file, or of all in a zip file together."""
 _CHUNK = 1 << 18
+_MAX_TOKEN_BYTES = 4_000_000
 
 
 def read_reqif_file(path: Path) -> ReqifDocument:
@@ -78,13 +87,13 @@ def read_reqif_file(path: Path) -> ReqifDocument:
         if is_zip:
             _read_archive(path.name, stream, document)
         else:
-            parse_reqif(path.name, _ByteLimit(path.name).read_chunks(stream), document)
+            parse_reqif(path.name, _ByteLimit(path.name, MAX_BYTES).read_chunks(stream), document)
     return document
 
 
 def _read_archive(name: str, stream: IO[bytes], document: ReqifDocument) -> None:
     """Read each .reqif of a zip file; nothing of it is written to the disk."""
-    limit = _ByteLimit(name)
+    limit = _ByteLimit(name, limit_unpacked(stream, MAX_BYTES))
     try:
         with zipfile.ZipFile(stream) as archive:
             members = [each for each in archive.infolist() if each.filename.lower().endswith(".reqif")]
@@ -100,14 +109,14 @@ def _read_archive(name: str, stream: IO[bytes], document: ReqifDocument) -> None
 class _ByteLimit:
     """Counts what is read: what a zip file says of its sizes may be a lie."""
 
-    def __init__(self, name: str) -> None:
-        self._name, self._bytes_left = name, MAX_BYTES
+    def __init__(self, name: str, max_bytes: int) -> None:
+        self._name, self._max_bytes, self._bytes_left = name, max_bytes, max_bytes
 
     def read_chunks(self, stream: IO[bytes]) -> Iterator[bytes]:
         while chunk := stream.read(_CHUNK):
             self._bytes_left -= len(chunk)
             if self._bytes_left < 0:
-                words = f"it is larger than {MAX_BYTES // 1_000_000} MB"
+                words = f"it is larger than {self._max_bytes // 1_000_000} MB"
                 raise ForeignFileError(words, Span.of_file(self._name), "export the specifications one by one")
             yield chunk
 
@@ -149,8 +158,14 @@ class _ReqifParser(XmlEvents):
 
     def parse(self, chunks: Iterable[bytes]) -> None:
         with self.explained():
+            given_bytes = 0
             for chunk in chunks:
                 self.parser.Parse(chunk, False)  # noqa: FBT003 - expat's signature
+                given_bytes += len(chunk)
+                # What has not ended yet, expat reads from its beginning again with each piece of the file.
+                if given_bytes - self.parser.CurrentByteIndex > _MAX_TOKEN_BYTES:
+                    words = f"a tag or comment in it is longer than {_MAX_TOKEN_BYTES // 1_000_000} MB"
+                    raise self.refuse(words, self.malformed_help)
             self.parser.Parse(b"", True)  # noqa: FBT003
 
     def _local(self, name: str) -> str:

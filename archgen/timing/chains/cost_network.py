@@ -130,6 +130,11 @@ class CostNetwork:
         return hops, [weigh(costs) for costs in starts]
 
 
+def has_gaps(cost: int) -> bool:
+    """Whether a sum of costs has a figure in it that is not known."""
+    return cost % (1 << _TIE_BITS) > 0
+
+
 @remember_latest
 def _prepare_network(analysis: Analysis) -> CostNetwork:
     names = tuple(analysis.system.activities)

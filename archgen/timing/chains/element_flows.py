@@ -3,18 +3,16 @@
 from __future__ import annotations
 
 import itertools
-from collections import deque
 from collections.abc import Iterable, Iterator, Mapping
-from fractions import Fraction
 
 from archgen.frozen import dataclass
 from archgen.model.architecture import Architecture, Waypoint
-from archgen.model.graph_search import find_rings
 from archgen.timing.analysis import Analysis, ChainResult, EdgeFit, EventPace
 from archgen.timing.chains.chain_regions import lay_out_chain
 from archgen.timing.chains.cost_network import CostNetwork
 from archgen.timing.chains.extreme_paths import find_extreme_path
-from archgen.timing.figures.timing_values import TimingValue, is_known_bound, sum_bounds
+from archgen.timing.chains.sensing_ways import SensingWays
+from archgen.timing.figures.timing_values import TimingValue, sum_bounds
 from archgen.timing.system.timing_system import Arc
 
 _LONGEST_CHAIN = 20
@@ -25,8 +23,7 @@ class ElementFlow:
     """What passes along an arc; times in ns.
 
     `age` is that of the data where it arrives, since the work began that gives it; `wait` passes until it is read.
-    `since_sensing` is its age on arrival since the farthest sensor took it, along `way` (activities, the reader last): of
-    each sensor the way of the fewest elements counts, which is what it is read for.
+    `since_sensing` is its age on arrival since the farthest sensor took it, along `way` (activities, the reader last; see `SensingWays`).
     """
 
     arc: Arc
@@ -60,9 +57,6 @@ class FlowFinder:
         """Index the steps of chains with a deadline, and how the ends of arcs fit together."""
         self.analysis = analysis
         self._network = CostNetwork.of_analysis(analysis)
-        edges = _find_edge_components(architecture)
-        self._feeding_arcs = {name: self._list_feeding_arcs(name, edges) for name in analysis.system.activities}
-        """By activity what it works on; of what touches the world, such as a motor that tells where it stands, nothing."""
         self._elements = self._network.index_elements(architecture)
         self._fits: Mapping[Arc, EdgeFit] = {fit.arc: fit for fit in analysis.edges}
         self._chains_by_step: dict[tuple[str, str], list[ChainResult]] = {}
@@ -72,9 +66,7 @@ class FlowFinder:
                 self._chains_by_step.setdefault(step, []).append(chain)
         self._flows: dict[Arc, ElementFlow] = {}
         self._unjudged: dict[Arc, UnjudgedWay | None] = {}
-        self._ways: dict[tuple[str, str], tuple[tuple[str, ...], TimingValue]] = {}
-        sources = {name: [arc.source for arc in arcs] for name, arcs in analysis.system.arcs_into.items()}
-        self._loops = {name: loop for loop in find_rings(sources) for name in loop}
+        self._ways = SensingWays(self._network, architecture)
 
     def list_taken(self, activity_ids: Iterable[str]) -> list[ElementFlow]:
         """Return what some activities take in, without what they send one another, in the order of their inputs."""
@@ -116,7 +108,7 @@ class FlowFinder:
     def _make_flow(self, arc: Arc) -> ElementFlow:
         steps = self._network.steps
         delay, response = steps.sampling_delay(arc), self.analysis.responses[arc.source].worst
-        way, since = self._find_way(arc.source, arc.target)
+        way = self._ways.find_way(arc.source, arc.target)
         return ElementFlow(
             arc,
             self.analysis.outputs.get((arc.source, arc.output), EventPace(None)),
@@ -125,78 +117,7 @@ class FlowFinder:
             delay.why,
             steps.arrivals.fires_reader(arc),
             self._fits.get(arc),
-            sum_bounds((since, steps.link_latency(arc))),
-            (*way, arc.target),
+            sum_bounds((way.age, steps.link_latency(arc))),
+            (*way.activities, arc.target),
             tuple(self._chains_by_step.get((arc.source, arc.target), ())),
         )
-
-    def _find_way(self, source: str, reader: str) -> tuple[tuple[str, ...], TimingValue]:
-        """Return the way from the farthest sensor to an activity that sends to a reader, and how old what it sends then is
-        at most.
-        """
-        # Only a reader that feeds the source, too, lies on a way to it: to all others what it sends is the same.
-        passed = reader if reader in self._loops.get(source, ()) else ""
-        if (source, passed) not in self._ways:
-            ways = [
-                ((*(arc.source for arc in arcs), source), self._sum_way(source, arcs))
-                for arcs in self._list_ways(source, passed)
-            ]
-            # What has no bound is the farthest: then the others say nothing.
-            self._ways[source, passed] = max(ways or [((source,), self._sum_way(source, ()))], key=_rank_age)
-        return self._ways[source, passed]
-
-    def _list_ways(self, source: str, reader: str) -> Iterator[tuple[Arc, ...]]:
-        """Yield the arcs of the shortest way from each sensor to an activity, past a reader; none where it is one itself."""
-        leaving: dict[str, Arc | None] = {source: None}
-        waiting = deque([source])
-        while waiting:
-            current = waiting.popleft()
-            arcs = self._feeding_arcs[current]
-            if not arcs:
-                yield tuple(_follow(leaving, current))
-            for arc in arcs:
-                if arc.source not in leaving and arc.source != reader:
-                    leaving[arc.source] = arc
-                    waiting.append(arc.source)
-
-    def _list_feeding_arcs(self, name: str, edges: Mapping[str, frozenset[str]]) -> tuple[Arc, ...]:
-        """Return what an activity works on: what fires it; where it works by its own clock, all that it reads."""
-        activities = self.analysis.system.activities
-        arcs = tuple(arc for arc in self.analysis.system.arcs_into.get(name, ()) if arc.role == "data")
-        arcs = tuple(filter(self._network.steps.arrivals.fires_reader, arcs)) or arcs
-        touching = edges.get(activities[name].node)
-        if touching is None:
-            return arcs
-        # A sensor may be several nodes, of which the last one works on what the first one took.
-        return tuple(arc for arc in arcs if touching & edges.get(activities[arc.source].node, frozenset()))
-
-    def _sum_way(self, name: str, arcs: tuple[Arc, ...]) -> TimingValue:
-        steps = self._network.steps
-        parts = [self._network.start_response(arcs[0].source if arcs else name)]
-        for arc in arcs:
-            parts += (steps.link_latency(arc), steps.sampling_wait(arc), self._network.step_response(arc))
-        return sum_bounds(parts)
-
-
-def _follow(leaving: Mapping[str, Arc | None], name: str) -> Iterator[Arc]:
-    """Yield the arcs of a way on from an activity, by the arc by which the way leaves each."""
-    arc = leaving[name]
-    while arc is not None:
-        yield arc
-        arc = leaving[arc.target]
-
-
-def _find_edge_components(architecture: Architecture) -> dict[str, frozenset[str]]:
-    """Return the components that sense or move something outside of the architecture, by each node that implements some."""
-    edges = frozenset(
-        component.id
-        for component in architecture.components.values()
-        if any(port.external for port in component.inputs.values())
-        or any(port.external for port in component.outputs.values())
-    )
-    return {node.id: found for node in architecture.nodes.values() if (found := edges.intersection(node.implements))}
-
-
-def _rank_age(found: tuple[tuple[str, ...], TimingValue]) -> tuple[bool, Fraction]:
-    age = found[1]
-    return not is_known_bound(age), age.value or Fraction(0)

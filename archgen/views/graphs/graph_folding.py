@@ -17,6 +17,7 @@ from collections.abc import Iterator, Sequence
 from typing import get_args
 
 from archgen.frozen import replace
+from archgen.grouping import group_pairs
 from archgen.views.inline_text import count_noun
 from archgen.views.picture_shapes import Arrow, Box, Cluster, ElementChange, Graph, PeriodStep
 
@@ -56,14 +57,16 @@ def _fold_clusters(graph: Graph, cluster_ids: set[str], max_arrows: int) -> Grap
     drawn_ids = {box.id: box.cluster if box.cluster in cluster_ids else box.id for box in graph.boxes}
     drawn_ids |= {cluster.id: cluster.id for cluster in graph.clusters}
     outer_arrows = [arrow for arrow in graph.arrows if drawn_ids[arrow.tail] != drawn_ids[arrow.head]]
-    hidden_arrows = [arrow for arrow in graph.arrows if drawn_ids[arrow.tail] == drawn_ids[arrow.head]]
-    flows_within = {
-        name: sum(arrow.count for arrow in hidden_arrows if drawn_ids[arrow.tail] == name)
-        for name in sorted(cluster_ids)
-    }
+    flows_within = Counter[str]()
+    for arrow in graph.arrows:
+        if (drawn_id := drawn_ids[arrow.tail]) == drawn_ids[arrow.head] and drawn_id in cluster_ids:
+            flows_within[drawn_id] += arrow.count
     boxes = [box for box in graph.boxes if box.cluster not in cluster_ids]
+    boxes_inside = group_pairs((box.cluster, box) for box in graph.boxes)
     boxes += [
-        _folded_box(graph, cluster, flows_within[cluster.id]) for cluster in graph.clusters if cluster.id in cluster_ids
+        _folded_box(cluster, boxes_inside[cluster.id], flows_within[cluster.id])
+        for cluster in graph.clusters
+        if cluster.id in cluster_ids
     ]
     arrows = merge_arrows(outer_arrows, {key: str(value) for key, value in drawn_ids.items()})
     kinds = {cluster.emphasis == "neighbour" for cluster in graph.clusters if cluster.id in cluster_ids}
@@ -83,8 +86,7 @@ def _fold_clusters(graph: Graph, cluster_ids: set[str], max_arrows: int) -> Grap
     return add_legend_keys(folded_graph)
 
 
-def _folded_box(graph: Graph, cluster: Cluster, flows: int) -> Box:
-    inside = [box for box in graph.boxes if box.cluster == cluster.id]
+def _folded_box(cluster: Cluster, inside: Sequence[Box], flows: int) -> Box:
     counts = f"{len(inside)} inside" + (f", {count_noun(flows, 'flow')} among them" if flows else "")
     lines = (*cluster.lines, counts, *_list_titles([box.title for box in inside]))
     return Box(

@@ -39,11 +39,12 @@ _MAX_DEPTH = 2
 def list_group_parts(lookup: Lookup, group: Group) -> Iterator[tuple[str, str, Block]]:
     """Yield what the components of a group serve, which chains run through them, and whom their owners talk to, with titles."""
     architecture = lookup.architecture
-    members = {each.id for each in lookup.shown_members(group.id)}
+    members = {each.id: each for each in lookup.shown_members(group.id)}
+    own_names = {use.text for each in members.values() for use in each.requirements if use.is_id}
     served = [
         architecture.requirements[name]
-        for name, components in lookup.components_for_requirement.items()
-        if name in architecture.requirements and members & {each.id for each in components}
+        for name in lookup.components_for_requirement
+        if name in own_names and name in architecture.requirements
     ]
     if table := make_requirement_table(lookup, served):
         yield "requirements-of", "Requirements", replace(table, anchor=f"table:requirements-of/{group.id}")

@@ -178,7 +178,7 @@ def find_impact(
     chains = tuple(_find_chains(judged, late))
     broken_ids = {each.result.id for each in chains}
     interfaces = _find_interfaces(lookup, exchanges, late)
-    fed = lookup.find_fed(sorted(late.components))
+    fed = lookup.reach.find_fed(sorted(late.components))
     cases = lookup.steps.by_use_case
     return PartnerImpact(
         late,

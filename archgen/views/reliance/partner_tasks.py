@@ -14,7 +14,7 @@ from archgen.views import element_references, inline_text
 from archgen.views.agreement.exchange_tables import PartnerExchange
 from archgen.views.agreement.interface_terms import InterfaceTerms
 from archgen.views.inline_text import count_noun
-from archgen.views.lookup import Lookup
+from archgen.views.lookup import Lookup, group_values
 from archgen.views.reliance.impact_outline import (
     list_chain_blocks,
     list_milestone_blocks,
@@ -186,6 +186,11 @@ def _list_planned(lookup: Lookup, impact: PartnerImpact, partner: str) -> Iterat
     found = []
     alone = {each.requirement.id for each in impact.requirements if not each.others}
     activities = lookup.timing.activities_of_node if lookup.timing else {}
+    given_by = group_values(
+        (name, each)
+        for each in impact.interfaces
+        for name in dict.fromkeys(end.node for every in each.terms for end in every.interface.giver_endpoints)
+    )
     for node in lookup.architecture.nodes.values():
         if node.status != "planned" or partner not in element_references.list_node_owners(lookup.architecture, node.id):
             continue
@@ -195,12 +200,7 @@ def _list_planned(lookup: Lookup, impact: PartnerImpact, partner: str) -> Iterat
         if not node.written and all(each.status == "existing" for each in components):
             continue  # it exists, and which node it is nobody wrote yet
         requirements = dict.fromkeys(use.text for each in components for use in each.requirements if use.text in alone)
-        given = [
-            each
-            for each in impact.interfaces
-            if any(end.node == node.id for every in each.terms for end in every.interface.giver_endpoints)
-        ]
-        partners = dict.fromkeys(taker for each in given for taker in each.takers)
+        partners = dict.fromkeys(taker for each in given_by.get(node.id, ()) for taker in each.takers)
         found.append(PlannedNode(node, tuple(chains), tuple(requirements), tuple(partners)))
     yield from sorted(found, key=lambda each: (-len(each.chains), -len(each.requirements), -len(each.partners)))
 

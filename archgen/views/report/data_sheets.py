@@ -8,7 +8,8 @@ from itertools import islice
 
 from archgen.grouping import group_pairs
 from archgen.model.component import Component
-from archgen.views import element_references, inline_text
+from archgen.views import inline_text
+from archgen.views.element_readers import list_reliance
 from archgen.views.elements.functional_level import (
     make_functionality_block,
     make_performance_blocks,
@@ -171,7 +172,7 @@ def _list_facts(lookup: Lookup, component: Component) -> Iterator[FactRow]:
         if isinstance(table, Table):
             yield "Performance", inline_text.join_lines(map(_phrase_row, table.rows))
     # In a line: a sheet is a page, and its table names who reads from it.
-    yield _RELIANCE, inline_text.join_inlines(islice(element_references.list_reliance(lookup, component, 1), 2), "; ")
+    yield _RELIANCE, inline_text.join_inlines(islice(list_reliance(lookup, component, 1), 2), "; ")
 
 
 def _phrase_row(row: Sequence[Inlines]) -> Inlines:

@@ -5,12 +5,14 @@ Site, cards and documents read the same rows.
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
+import functools
+from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
 from fractions import Fraction
 from types import MappingProxyType
+from typing import TypeVar
 
 from archgen.diagnostics import join_words, order_naturally
-from archgen.frozen import NamedTuple
+from archgen.frozen import NamedTuple, replace
 from archgen.model.component import Component
 from archgen.model.element_ids import make_id, make_unique_id
 from archgen.model.node import Endpoint, Node
@@ -21,12 +23,13 @@ from archgen.timing.figures.tick_unit import NS_PER_SECOND
 from archgen.timing.figures.timing_values import TimingValue, sum_bounds, sum_fractions
 from archgen.timing.rates.link_traffic import find_sending_rate
 from archgen.timing.system.timing_system import Activity
-from archgen.views import element_references, inline_text
+from archgen.views import element_readers, element_references, inline_text
 from archgen.views.lookup import Lookup
 from archgen.views.shapes import Block, Bullets, Inlines, Markdown, Paragraph, Section, Table, Text, make_columns
 from archgen.views.timing import chain_status, timing_tables, value_format
 from archgen.views.timing.timing_lookup import TimingLookup
 
+_Views = TypeVar("_Views")
 _PARTNER_VERBS = (("gives", "takes"), ("calls", "answers"))
 """What another partner does with what comes in and goes out: with data, and with calls."""
 
@@ -174,9 +177,35 @@ def _link_chain(lookup: Lookup, chain: ChainResult) -> Inlines:
     return (Text(title, ref=f"chain:{chain.id}"), Text(" "), *timing_tables.deadline_cell(chain))
 
 
+def _remember_views(
+    make: Callable[[Lookup, Sequence[Activity]], _Views],
+) -> Callable[[Lookup, Sequence[Activity]], _Views]:
+    """Return a function that makes what it shows of activities once: the pages of a component and of its node both show it."""
+
+    @functools.wraps(make)
+    def recall_or_make(lookup: Lookup, activities: Sequence[Activity]) -> _Views:
+        if lookup.timing is None:
+            return make(lookup, activities)
+        key = make.__name__, tuple(each.id for each in activities)
+        if key not in lookup.timing.remembered:
+            lookup.timing.remembered[key] = make(lookup, activities)
+        views: _Views = lookup.timing.remembered[key]
+        return views
+
+    return recall_or_make
+
+
 def make_flow_blocks(lookup: Lookup, element_id: str, title: str, activities: Sequence[Activity]) -> Iterator[Block]:
     """Yield the tables of what an element takes in and gives out."""
+    for table in _make_flow_tables(lookup, activities):
+        yield replace(table, anchor=f"{table.anchor}/{element_id}", caption=f"{title} {table.caption}")
+
+
+@_remember_views
+def _make_flow_tables(lookup: Lookup, activities: Sequence[Activity]) -> list[Table]:
+    """Return the tables of what activities take in and give out, without the element in anchor and caption."""
     tables = zip(("in", "out"), ("takes in", "gives out"), list_flow_rows(lookup, activities), strict=True)
+    made = []
     for key, words, rows in tables:
         if rows:
             columns = make_columns(
@@ -200,8 +229,9 @@ def make_flow_blocks(lookup: Lookup, element_id: str, title: str, activities: Se
                 )
                 for row in rows
             )
-            table = Table(f"table:flows-{key}/{element_id}", f"{title} {words}", columns, cells, wide=True)
-            yield timing_tables.drop_blank_columns(table)
+            table = Table(f"table:flows-{key}", words, columns, cells, wide=True)
+            made.append(timing_tables.drop_blank_columns(table))
+    return made
 
 
 def make_chain_share_table(lookup: Lookup, element_id: str, title: str, activities: Sequence[Activity]) -> Table | None:
@@ -278,14 +308,14 @@ def _describe_unjudged(lookup: Lookup, way: UnjudgedWay) -> str:
     return f"`{port}`: {duration}{most} from what `{first}` senses until `{last}` has acted on it"
 
 
-def make_unjudged_blocks(lookup: Lookup, activities: Sequence[Activity]) -> Iterator[Block]:
-    """Yield what no chain says of the inputs of an element, and the lines that would make a chain of each."""
+@_remember_views
+def make_unjudged_blocks(lookup: Lookup, activities: Sequence[Activity]) -> tuple[Block, ...]:
+    """Return what no chain says of the inputs of an element, and the lines that would make a chain of each."""
     found = list_unjudged_lines(lookup, activities)
     if not found:
-        return
+        return ()
     lead = "On these inputs no deadline rests. What a chain from the farthest sensor would say:"
-    yield Paragraph(inline_text.to_inlines(lead))
-    yield Bullets(tuple(_link_line(lookup, text) for _, text in found))
+    said = (Paragraph(inline_text.to_inlines(lead)), Bullets(tuple(_link_line(lookup, text) for _, text in found)))
     all_activities = lookup.timing.analysis.system.activities if lookup.timing else {}
     names_by_way: dict[tuple[str, ...], str] = {}
     for way in (way for way, _ in found if way.duration is not None):
@@ -296,11 +326,13 @@ def make_unjudged_blocks(lookup: Lookup, activities: Sequence[Activity]) -> Iter
         names_by_way.setdefault(nodes, make_unique_id(name, taken_names))
     lines = [f"  {name}:\n    through: [{', '.join(nodes)}]" for nodes, name in names_by_way.items()]
     if not lines:
-        return
-    yield Paragraph(
-        inline_text.message_to_inlines("The lines that make chains of them; a `deadline` is yours to choose:")
+        return said
+    lead = "The lines that make chains of them; a `deadline` is yours to choose:"
+    return (
+        *said,
+        Paragraph(inline_text.message_to_inlines(lead)),
+        Markdown("```yaml\nchains:\n" + "\n".join(lines) + "\n```"),
     )
-    yield Markdown("```yaml\nchains:\n" + "\n".join(lines) + "\n```")
 
 
 def _link_line(lookup: Lookup, text: str) -> Inlines:
@@ -336,7 +368,7 @@ def list_flow_lines(lookup: Lookup, element: Node | Component) -> Iterator[tuple
             for way, text in list_unjudged_lines(lookup, activities)
         ),
     )
-    yield "what rests on it", tuple(map(_read, element_references.list_reliance(lookup, element)))
+    yield "what rests on it", tuple(map(_read, element_readers.list_reliance(lookup, element)))
     partners = make_partner_bullets(lookup, activities)
     yield "who to talk to", tuple(map(_read, partners.items)) if partners else ()
 
@@ -401,10 +433,9 @@ def list_time_left(lookup: Lookup, activities: Sequence[Activity]) -> Iterator[I
             yield (*name, Text("nothing that is written limits it"))
 
 
-def make_partner_bullets(
-    lookup: Lookup, activities: Sequence[Activity], unsettled: Mapping[str, Inlines] = MappingProxyType({})
-) -> Bullets | None:
-    """List the other partners with what passes between them and an element: whom to talk to, and of what that is unsettled."""
+@_remember_views
+def _list_exchanges(lookup: Lookup, activities: Sequence[Activity]) -> dict[str, Inlines]:
+    """Return by other partner, in words, what passes between him and an element."""
     architecture = lookup.architecture
     all_activities = lookup.timing.analysis.system.activities if lookup.timing else {}
     own = {owner for each in activities for owner in element_references.list_node_owners(architecture, each.node)}
@@ -416,23 +447,31 @@ def make_partner_bullets(
                 if owner not in own:
                     verb = _PARTNER_VERBS[flow.arc.role == "request"][side]
                     ports.setdefault(owner, {}).setdefault(verb, {})[_port_name(port)] = None
-    items = []
-    for owner in sorted(ports, key=order_naturally):
-        words = join_words(
-            [f"{verb} {join_words([f'`{each}`' for each in names])}" for verb, names in ports[owner].items()]
+    return {
+        owner: (
+            *inline_text.owner_links(architecture, (owner,)),
+            *element_references.link_names(architecture, f" {_describe_exchange(ports[owner])}"),
+            *(
+                (Text(f" · {known.contact}", muted=True),)
+                if (known := architecture.partners.get(owner)) and known.contact
+                else ()
+            ),
         )
-        items.append(
-            (
-                *inline_text.owner_links(architecture, (owner,)),
-                *element_references.link_names(architecture, f" {words}"),
-                *(
-                    (Text(f" · {known.contact}", muted=True),)
-                    if (known := architecture.partners.get(owner)) and known.contact
-                    else ()
-                ),
-                *unsettled.get(owner, ()),
-            )
-        )
+        for owner in sorted(ports, key=order_naturally)
+    }
+
+
+def _describe_exchange(ports_by_verb: Mapping[str, Iterable[str]]) -> str:
+    return join_words(
+        [f"{verb} {join_words([f'`{each}`' for each in names])}" for verb, names in ports_by_verb.items()]
+    )
+
+
+def make_partner_bullets(
+    lookup: Lookup, activities: Sequence[Activity], unsettled: Mapping[str, Inlines] = MappingProxyType({})
+) -> Bullets | None:
+    """List the other partners with what passes between them and an element: whom to talk to, and of what that is unsettled."""
+    items = [(*words, *unsettled.get(owner, ())) for owner, words in _list_exchanges(lookup, activities).items()]
     return Bullets(tuple(items)) if items else None
 
 
@@ -446,7 +485,7 @@ def make_flow_sections(
     partners = make_partner_bullets(lookup, activities, unsettled)
     time_left, reliance = (
         tuple(list_time_left(lookup, activities)),
-        tuple(element_references.list_reliance(lookup, element)),
+        tuple(element_readers.list_reliance(lookup, element)),
     )
     unwritten = (
         Paragraph(inline_text.to_inlines("No execution time is written. What is left to it:")),
@@ -462,7 +501,7 @@ def make_flow_sections(
             "How long it may take",
             (*((Bullets(known),) if known else ()), *(unwritten if time_left else ())),
         ),
-        ("unjudged", "What no chain says", tuple(make_unjudged_blocks(lookup, activities))),
+        ("unjudged", "What no chain says", make_unjudged_blocks(lookup, activities)),
         ("reliance", "What rests on it", (Bullets(reliance),) if reliance else ()),
         ("partners-of", "Who to talk to", (partners,) if partners else ()),
     ]

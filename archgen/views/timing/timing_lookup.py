@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from archgen.frozen import dataclass, field, replace
 from archgen.model.architecture import Architecture
@@ -42,6 +42,8 @@ class TimingLookup:
     """What responses are made of; None where the analysis keeps no state."""
     late_runs: Mapping[str, LateSchedule] = field(default_factory=dict)
     """The runs in which chains were late, by chain."""
+    remembered: dict[tuple[str, tuple[str, ...]], Any] = field(default_factory=dict, compare=False, repr=False)
+    """What was made of activities, by the name of the function that made it and their ids: the page of a component shows it, and that of its node."""
 
 
 def make_timing_lookup(analysis: Analysis, chains: Iterable[ChainResult] = ()) -> TimingLookup:

@@ -102,7 +102,7 @@ def test_large_files_and_archives_are_refused(tmp_path: Path) -> None:
     with zipfile.ZipFile(archive_file, "w", zipfile.ZIP_DEFLATED) as archive:
         archive.writestr("bomb.xmi", b"\0" * 65_000_000)
     assert archive_file.stat().st_size < 1_000_000
-    assert refuse(archive_file) == "it is larger than 64 MB"
+    assert refuse(archive_file) == "it is larger than 4 MB"
 
 
 def make_classes(generals: dict[str, str]) -> str:

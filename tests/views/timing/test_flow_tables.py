@@ -10,7 +10,7 @@ import yaml
 
 from archgen import pipeline
 from archgen.model.element_ids import is_id
-from archgen.views.element_references import list_reliance
+from archgen.views.element_readers import list_reliance
 from archgen.views.elements.element_card import make_card
 from archgen.views.lookup import Lookup, make_lookup
 from archgen.views.pages.report_outline import DocumentEdition
