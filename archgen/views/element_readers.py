@@ -62,7 +62,8 @@ def list_reliance(lookup: Lookup, element: Node | Component, max_names: int = 8)
         if names:
             yield inline_text.to_inlines(f"{words} ({count}): ", *inline_text.join_inlines(links), more)
     milestones_by_component = _index_milestones(architecture)
-    for milestone in dict.fromkeys(each for name in own for each in milestones_by_component.get(name, ())):
+    needing_milestones = {each.id: each for name in own for each in milestones_by_component.get(name, ())}
+    for milestone in needing_milestones.values():
         day = f" on {milestone.date}" if milestone.date else ""
         yield (Text("Needed for "), Text(milestone.title, f"milestone:{milestone.id}"), Text(day))
     if fed:
