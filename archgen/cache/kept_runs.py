@@ -118,16 +118,20 @@ class RunKeeper:
         """Note from now on what is asked and what is said, where it can be kept."""
         if not self._is_keepable:
             return
-        import shutil  # noqa: F401 - when it is loaded it looks whether these functions are those of the system
-
         self._streams = sys.stdout, sys.stderr
         sys.stdout, sys.stderr = self._copy_words(1, sys.stdout), self._copy_words(2, sys.stderr)
         # What some starts of Python have loaded already has taken it: a `.pth` file does so, for instance.
         subprocess = sys.modules.get("subprocess")
         early_takers = ((subprocess, "_fork_exec", "act"),) if hasattr(subprocess, "_fork_exec") else ()
         for module, name, kind in (*_NOTED_FUNCTIONS, *early_takers):
-            self._originals.append((module, name, getattr(module, name)))
-            setattr(module, name, self._note_calls(getattr(module, name), kind))
+            function = getattr(module, name)
+            noting_function = self._note_calls(function, kind)
+            # `shutil` looks there, when it is loaded, for what the functions of the system can do.
+            for able_functions in (os.supports_dir_fd, os.supports_fd, os.supports_follow_symlinks):
+                if function in able_functions:
+                    able_functions.add(noting_function)
+            self._originals.append((module, name, function))
+            setattr(module, name, noting_function)
         cache.note_git = self._note_git
         self._is_noting = True
 

@@ -24,7 +24,6 @@ from archgen.diagnostics import (
     sort_gravest_first,
 )
 from archgen.diagnostics.text_columns import find_width
-from archgen.products.output_options import OutputOptions
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
@@ -37,6 +36,7 @@ if TYPE_CHECKING:
     from archgen.model.selector_evaluation import Selection
     from archgen.model.selector_parser import SelectorProblem
     from archgen.pipeline import CheckedProject, VersionCache
+    from archgen.products.output_options import OutputOptions
     from archgen.products.trusted_backends import TrustedRevision
     from archgen.views.changes.site_changes import SiteChanges
     from archgen.views.pages.report_outline import DetailLevel
@@ -133,6 +133,8 @@ def make_drawing_options(
     checked_project: CheckedProject, selector_text: str | None, level: DetailLevel | None, revision: str | None = None
 ) -> OutputOptions:
     """Return what all outputs with pictures share: the selected part, and progress and warnings on this terminal."""
+    from archgen.products.output_options import OutputOptions
+
     selection = select_or_exit(checked_project, selector_text)
     return OutputOptions(selection, selector_text or "", level, revision, make_progress_printer(), print_warning)
 

@@ -9,7 +9,6 @@ from __future__ import annotations
 import json
 import os
 import re
-import shutil
 import unicodedata
 from collections.abc import Iterable, Iterator, Sequence
 from typing import TextIO
@@ -95,7 +94,11 @@ def find_width(stream: TextIO) -> int | None:
     columns = os.environ.get("COLUMNS", "")
     if columns.isascii() and columns.isdigit() and int(columns):
         return max(int(columns), _NARROWEST_TERMINAL)
-    return max(shutil.get_terminal_size().columns, _NARROWEST_TERMINAL) if stream.isatty() else None
+    if not stream.isatty():
+        return None
+    import shutil  # here: it loads four compressors
+
+    return max(shutil.get_terminal_size().columns, _NARROWEST_TERMINAL)
 
 
 def wrap_line(line: str, width: int | None, hanging: int = 4) -> list[str]:

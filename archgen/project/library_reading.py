@@ -12,6 +12,7 @@ import posixpath
 import re
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from functools import cache, lru_cache
+from itertools import chain
 from types import MappingProxyType
 
 from archgen import resources
@@ -258,9 +259,11 @@ def load_package_types(distro: str | None, packages: frozenset[str]) -> Mapping[
     def parse_part(file: str) -> Iterable[MappingEntry]:
         head, *type_texts = _TYPE_START.split(_read_shipped_text(file))
         kept = [each for each in type_texts if not packages.isdisjoint(_NAMED_PACKAGE.findall(each))]
-        if any(": *" in each for each in kept):  # what they share with other types stands at one of these
-            kept = [each for each in type_texts if each in kept or ": &" in each]
-        return _parse_types(file, "".join([head, *kept])) if kept else ()
+        # One by one: variants of a project use nearly the same packages.
+        parts = [each for each in kept if ": *" not in each]
+        if len(parts) < len(kept):  # what they share with other types stands at one of these
+            parts.append("".join(each for each in type_texts if ": &" in each or (": *" in each and each in kept)))
+        return chain.from_iterable(_parse_types(file, head + each) for each in parts)
 
     return _gather_types(distro, packages & list_shipped_packages(distro), parse_part)
 
@@ -366,6 +369,7 @@ def _read_shipped_text(file: str) -> str:
     return resources.resource_path(_FOLDER, file).read_text("utf-8")
 
 
+@lru_cache(128)
 def _parse_types(file: str, text: str) -> MappingNode:
     parsed_slice = parse_slice(file, text)
     diagnostics = parsed_slice.validate_once().diagnostics
