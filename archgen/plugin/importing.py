@@ -34,6 +34,7 @@ from archgen.model.path_resolver import title_from_id
 from archgen.pipeline import link_slices
 from archgen.project.library_reading import find_program_name, index_shipped_programs, load_shipped_component_types
 from archgen.regular_files import open_named_file
+from archgen.resources import worker_environment
 from archgen.syntax.project_files import MAX_BYTES
 from archgen.syntax.yaml_parser import parse_yaml
 from archgen.syntax.yaml_tree import MappingNode, ScalarNode, SequenceNode, YamlNode, node_to_data, resolve_scalar
@@ -49,4 +50,4 @@ __all__ += ["find_program_name", "index_shipped_programs", "is_id", "limit_unpac
 __all__ += ["load_shipped_component_types"]
 __all__ += ["make_camel_name", "make_id", "make_unique_id", "needs_quotes", "node_to_data", "open_named_file"]
 __all__ += ["parse_xml", "parse_yaml", "read_archive_members", "read_bounded", "resolve_scalar", "spell_in_ascii"]
-__all__ += ["title_from_id"]
+__all__ += ["title_from_id", "worker_environment"]

@@ -8,7 +8,7 @@ field names are a public interface: templates read them (docs/backends.md), so t
 from __future__ import annotations
 
 import dataclasses
-from collections.abc import Collection, Iterable, Mapping
+from collections.abc import Collection, Iterable, Iterator, Mapping
 from typing import Any, Literal
 
 from archgen.frozen import NamedTuple, dataclass, field, replace
@@ -400,6 +400,14 @@ class Page:
     """Whether there is nothing on it yet: only the paths of other pages lead to it, the navigation does not."""
     is_changed: bool = False
     """Whether this differs from the version that the site is compared with; the navigation marks that, too."""
+
+
+def head_part(title: str, blocks: Iterable[Block]) -> Iterator[Block]:
+    """Yield blocks below a title, where there is one; nothing for none."""
+    for index, block in enumerate(blocks):
+        if title and not index:
+            yield Paragraph((Text(title, strong=True),))
+        yield block
 
 
 def shape_to_plain(value: object) -> Any:  # noqa: ANN401 - plain data has no narrower type

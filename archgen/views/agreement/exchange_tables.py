@@ -241,3 +241,14 @@ def count_promised(interfaces: Iterable[InterfaceTerms], keys: tuple[str, ...]) 
 def pair_title(lookup: Lookup, pair: Sequence[str]) -> str:
     """Return the titles of two partners: `CERTH-ITI and FORTH-ICS`."""
     return " and ".join(join_owner_titles(lookup, [partner]) for partner in pair)
+
+
+def list_open_words(terms: Iterable[InterfaceTerms]) -> Inlines:
+    """Return which terms are open, and whether a chain is late or somebody contradicts."""
+    names = dict.fromkeys(shorten_name(name) for each in terms for name in each.open_names)
+    late = any(each.late_chains for each in terms)
+    broken = any(each.contradictions for each in terms)
+    runs: list[Text] = [Text(", ".join(names), status="open")] if names else []
+    runs += [Text("late chain", status="not proven", line_break=bool(runs))] if late else []
+    runs += [Text("contradiction", status="error", line_break=bool(runs))] if broken else []
+    return tuple(runs)

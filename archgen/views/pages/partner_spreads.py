@@ -31,6 +31,7 @@ from archgen.views.shapes import (
     Table,
     Text,
     drop_empty_columns,
+    head_part,
     make_columns,
 )
 from archgen.views.timing import chain_status, timing_tables, value_format
@@ -147,7 +148,7 @@ class SpreadWriter:
 
     def write_spread(self, partner: Partner) -> Section:
         """Write the section of a partner."""
-        shorts = list_short_blocks(self, partner) if is_short(self, partner) else None
+        shorts = self._list_short_blocks(partner)
         parts = (
             ("Gives", self._list_flow_blocks(partner, 0)),
             ("Takes", self._list_flow_blocks(partner, 1)),
@@ -173,15 +174,29 @@ class SpreadWriter:
             (Paragraph(inline_text.to_inlines(words)), *blocks),
         )
 
+    def _list_short_blocks(self, partner: Partner) -> Iterator[Block] | None:
+        """Return what is said of a partner that has little; None of another one."""
+        interfaces = [sides.get(partner.id, ()) for sides in (self.given, self.taken)]
+        counts = (sum(map(len, interfaces)), len(self.components.get(partner.id, ())), len(self.partners))
+        if not self.folds or not is_short(*counts):
+            return None
+        flow_rows = [
+            [self._write_flow(row, side) for row in self._gather_rows(each, side, by_output=True)]
+            for side, each in enumerate(interfaces)
+        ]
+        return list_short_blocks(
+            partner, flow_rows, self.list_deadline_blocks(partner), self.list_impact_blocks(partner)
+        )
+
     def _list_flow_blocks(self, partner: Partner, side: int) -> Iterator[Block]:
         interfaces = (self.given, self.taken)[side].get(partner.id, ())
         if not interfaces:
             yield Paragraph(inline_text.to_inlines(Text("Nothing.", muted=True)))
             return
-        rows = self.gather_rows(interfaces, side, by_output=True)
+        rows = self._gather_rows(interfaces, side, by_output=True)
         words = ""
         if self.folds and len(rows) > _MAX_ROWS:
-            rows, words = self.gather_rows(interfaces, side, by_output=False), "of one giver and taker"
+            rows, words = self._gather_rows(interfaces, side, by_output=False), "of one giver and taker"
         if self.folds and len(rows) > _MAX_ROWS:
             rows, words = self._join_by_partner(rows), "of one partner"
         if words:
@@ -199,10 +214,10 @@ class SpreadWriter:
         )
         verb = "gives" if side == 0 else "takes"
         anchor = f"table:{verb}/{partner.id}"
-        cells = tuple(self.write_flow(row, side) for row in rows)
+        cells = tuple(self._write_flow(row, side) for row in rows)
         yield drop_empty_columns(Table(anchor, f"{partner.title} {verb}", columns, cells, numbered=False, dense=True))
 
-    def gather_rows(self, interfaces: Iterable[InterfaceTerms], side: int, *, by_output: bool) -> list[_Flow]:
+    def _gather_rows(self, interfaces: Iterable[InterfaceTerms], side: int, *, by_output: bool) -> list[_Flow]:
         """Return a row for each output, or for each giver with its takers."""
         rows: dict[tuple[str, ...], list[InterfaceTerms]] = {}
         for terms in interfaces:
@@ -253,8 +268,7 @@ class SpreadWriter:
             for partners, joined in by_partner.items()
         ]
 
-    def write_flow(self, row: _Flow, side: int) -> tuple[Inlines, ...]:
-        """Return the cells of a row."""
+    def _write_flow(self, row: _Flow, side: int) -> tuple[Inlines, ...]:
         architecture = self.lookup.architecture
         partners = (inline_text.join_inlines(inline_text.partner_link(architecture, each) for each in row.partners),)
         what = join_first(list(row.types), 2)
@@ -273,7 +287,7 @@ class SpreadWriter:
             timing_tables.duration_cell(largest_value(flow.pace.gap for flow in row.flows)) if row.flows else (),
             timing_tables.duration_cell(largest_value(flow.age for flow in row.flows)) if row.flows else (),
             inline_text.to_inlines(", ".join(_list_promised(row.terms))),
-            _list_open_words(row.terms),
+            exchange_tables.list_open_words(row.terms),
         )
 
     def _name_ends(self, component_ids: Sequence[str]) -> Inlines:
@@ -446,14 +460,6 @@ class SpreadWriter:
             yield Paragraph(inline_text.to_inlines(f"Nothing since {self.changes.since}."))
 
 
-def head_part(title: str, blocks: Iterable[Block]) -> Iterator[Block]:
-    """Yield the blocks of a part of a spread below its title; nothing for none."""
-    for index, block in enumerate(blocks):
-        if title and not index:
-            yield Paragraph(inline_text.to_inlines(Text(title, strong=True)))
-        yield block
-
-
 def _group_by(interfaces: Iterable[InterfaceTerms], side: int) -> Mapping[str, list[InterfaceTerms]]:
     grouped: dict[str, list[InterfaceTerms]] = {}
     for terms in interfaces:
@@ -486,13 +492,3 @@ def _list_promised(terms: Iterable[InterfaceTerms]) -> list[str]:
         if row.promised and row.name.key in (*exchange_tables.PACE_TERMS, *exchange_tables.QOS_TERMS)
     )
     return list(dict.fromkeys(names))
-
-
-def _list_open_words(terms: Iterable[InterfaceTerms]) -> Inlines:
-    names = dict.fromkeys(exchange_tables.shorten_name(name) for each in terms for name in each.open_names)
-    late = any(each.late_chains for each in terms)
-    broken = any(each.contradictions for each in terms)
-    runs: list[Text] = [Text(", ".join(names), status="open")] if names else []
-    runs += [Text("late chain", status="not proven", line_break=bool(runs))] if late else []
-    runs += [Text("contradiction", status="error", line_break=bool(runs))] if broken else []
-    return tuple(runs)

@@ -2,36 +2,33 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from typing import TYPE_CHECKING
+from collections.abc import Iterable, Iterator, Sequence
 
 from archgen.model.architecture import Partner
 from archgen.views import inline_text
 from archgen.views.shapes import Block, Inlines, Paragraph, Table, Text, drop_empty_columns, make_columns
-
-if TYPE_CHECKING:
-    from archgen.views.pages.partner_spreads import SpreadWriter
 
 _MANY_PARTNERS = 12
 """With more of them, a page for each would make a document of partners alone."""
 _MAX_FLOWS, _MAX_COMPONENTS = 12, 6
 
 
-def is_short(writer: SpreadWriter, partner: Partner) -> bool:
-    """Return whether a partner shares a page with another one."""
-    flows = sum(len(sides.get(partner.id, ())) for sides in (writer.given, writer.taken))
-    is_small = flows <= _MAX_FLOWS and len(writer.components.get(partner.id, ())) <= _MAX_COMPONENTS
-    return writer.folds and is_small and len(writer.partners) > _MANY_PARTNERS
+def is_short(flow_count: int, component_count: int, partner_count: int) -> bool:
+    """Return whether one of so many partners shares a page with another one."""
+    return flow_count <= _MAX_FLOWS and component_count <= _MAX_COMPONENTS and partner_count > _MANY_PARTNERS
 
 
-def list_short_blocks(writer: SpreadWriter, partner: Partner) -> Iterator[Block]:
-    """Yield what a partner gives and takes in one table, and in sentences what rests on it."""
+def list_short_blocks(
+    partner: Partner,
+    flow_rows: Sequence[Iterable[tuple[Inlines, ...]]],
+    deadlines: Iterable[Table],
+    impacts: Iterable[Paragraph],
+) -> Iterator[Block]:
+    """Yield what a partner gives and takes, two lists of rows, in one table, and in sentences what rests on it."""
     cells = tuple(
-        ((Text(verb, strong=True),) if not at else (), *writer.write_flow(row, side))
-        for side, verb in enumerate(("Gives", "Takes"))
-        for at, row in enumerate(
-            writer.gather_rows((writer.given, writer.taken)[side].get(partner.id, ()), side, by_output=True)
-        )
+        ((Text(verb, strong=True),) if not at else (), *row)
+        for verb, rows in zip(("Gives", "Takes"), flow_rows, strict=True)
+        for at, row in enumerate(rows)
     )
     columns = make_columns(
         ("", 0.5),
@@ -46,9 +43,8 @@ def list_short_blocks(writer: SpreadWriter, partner: Partner) -> Iterator[Block]
     )
     caption = f"What {partner.title} gives and takes"
     yield drop_empty_columns(Table(f"table:flows/{partner.id}", caption, columns, cells, numbered=False, dense=True))
-    deadlines = [_phrase_deadline(row) for each in writer.list_deadline_blocks(partner) for row in each.rows]
-    for paragraph in writer.list_impact_blocks(partner):
-        words = inline_text.join_inlines(deadlines, "; ")
+    words = inline_text.join_inlines([_phrase_deadline(row) for each in deadlines for row in each.rows], "; ")
+    for paragraph in impacts:
         yield Paragraph((*paragraph.inlines, *((Text(" Deadlines: "), *words, Text(".")) if words else ())))
 
 

@@ -19,7 +19,6 @@ from archgen.views.elements.functional_level import first_sentence
 from archgen.views.inline_text import count_noun
 from archgen.views.lookup import Lookup
 from archgen.views.pages import dashboard, report_outline
-from archgen.views.pages.partner_spreads import head_part
 from archgen.views.pages.report_outline import DocumentEdition
 from archgen.views.pages.timing_chapter import make_figures
 from archgen.views.report import front_pages
@@ -43,6 +42,7 @@ from archgen.views.shapes import (
     Text,
     Waterfall,
     drop_empty_columns,
+    head_part,
     make_columns,
 )
 from archgen.views.tables import deployment_tables, finding_tables
