@@ -14,7 +14,7 @@ from archgen.compare.architecture_version import ArchitectureVersion
 from archgen.compare.comparison import Change
 from archgen.compare.key_phrases import title_partners
 from archgen.compare.kinds import ELEMENT_KINDS, KIND_ORDER
-from archgen.compare.kinds.key_spec import ReadContext, key_values
+from archgen.compare.kinds.key_spec import KeyValues, ReadContext, key_values
 from archgen.compare.kinds.kind_spec import KindSpec
 from archgen.compare.kinds.ros_kinds import NODE, PORT, NodePort
 from archgen.compare.match_elements import match_elements
@@ -81,7 +81,7 @@ def _list_kind(kind: KindSpec, context: ReadContext, other_version: _ListedVersi
             kind.name,
             context.matched_ids.common_id(kind.name, own_id),
             own_id,
-            key_values(keys, element, context),
+            KeyValues(keys, element, context),
             kind.parent(element, context),
             kind.owner(element, context),
             kind.is_declared(element),
@@ -170,7 +170,7 @@ class DifferenceFinder:
             {
                 candidate.parent_key
                 for candidate in side.values()
-                if candidate.parent_key and "carried" in candidate.values
+                if candidate.kind == "port" and candidate.parent_key and "carried" in candidate.values
             }
             for side in (self.elements_before, self.elements_after)
         )
@@ -405,7 +405,6 @@ def find_changes(
         old_connections,
         new_connections,
         *elements,
-        (_components_by_requirement(elements[0]), _components_by_requirement(elements[1])),
         lost_keys,
         _find_unnamed_outputs(after.architecture),
         (before.sound_files, after.sound_files),
@@ -428,12 +427,3 @@ def _find_unnamed_outputs(architecture: Architecture) -> frozenset[str]:
         if endpoint.node in written_nodes and endpoint.use in {"publishes", "serves"}
     )
     return frozenset(endpoint.port for endpoint in offered_endpoints if endpoint.port and not endpoint.name_written)
-
-
-def _components_by_requirement(elements: Mapping[ElementKey, ComparedElement]) -> Mapping[str, frozenset[str]]:
-    components: dict[str, set[str]] = defaultdict(set)
-    for (kind, component_id), element in elements.items():
-        requirements = element.values.get("requirements") if kind == "component" else None
-        for requirement in requirements if isinstance(requirements, frozenset) else ():
-            components[requirement].add(component_id)
-    return {requirement: frozenset(component_ids) for requirement, component_ids in components.items()}

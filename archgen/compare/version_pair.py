@@ -10,6 +10,7 @@ from collections.abc import Collection, Iterator, Mapping
 from archgen.compare.matched_ids import MatchedIds
 from archgen.frozen import dataclass, field
 from archgen.model.architecture import Architecture
+from archgen.model.latest_result import remember_latest
 
 _OppositeEnds = Mapping[str, frozenset[str]]
 
@@ -124,9 +125,6 @@ class VersionPair:
     connections_after: ConnectionMap
     elements_before: ElementsByKey
     elements_after: ElementsByKey
-    serving_components: tuple[Mapping[str, frozenset[str]], Mapping[str, frozenset[str]]]
-    """For each requirement the components that name it, before and after."""
-
     lost_keys: tuple[frozenset[str], frozenset[str]] = (frozenset(), frozenset())
     """Keys of what could not be read, before and after: whether that was added or removed is unknown."""
 
@@ -158,6 +156,11 @@ class VersionPair:
     def elements(self) -> tuple[ElementsByKey, ElementsByKey]:
         """Return the elements before and after."""
         return self.elements_before, self.elements_after
+
+    @property
+    def serving_components(self) -> tuple[Mapping[str, frozenset[str]], Mapping[str, frozenset[str]]]:
+        """Return for each requirement the components that name it, before and after."""
+        return _list_serving_components(self)
 
     def find_both(self, kind: str, name: str) -> tuple[ComparedElement | None, ComparedElement | None]:
         """Return an element as it was before, and as it is after."""
@@ -284,3 +287,17 @@ class VersionPair:
     def is_added(self, kind: str, name: str) -> bool:
         """Whether an element was added."""
         return (kind, name) in self.elements_after and (kind, name) not in self.elements_before
+
+
+@remember_latest
+def _list_serving_components(
+    versions: VersionPair,
+) -> tuple[Mapping[str, frozenset[str]], Mapping[str, frozenset[str]]]:
+    servers: tuple[dict[str, set[str]], dict[str, set[str]]] = (defaultdict(set), defaultdict(set))
+    for components, elements in zip(servers, versions.elements, strict=True):
+        for (kind, component_id), element in elements.items():
+            requirements = element.values.get("requirements") if kind == "component" else None
+            for requirement in requirements if isinstance(requirements, frozenset) else ():
+                components[requirement].add(component_id)
+    before, after = ({name: frozenset(each) for name, each in components.items()} for components in servers)
+    return before, after

@@ -60,12 +60,27 @@ def pair(
     lost: tuple[str, str] = ("", ""),
     serving: tuple[dict[str, frozenset[str]], dict[str, frozenset[str]]] | None = None,
 ) -> VersionPair:
-    """Make a pair of versions; `reads` are the connections before and after, `lost` the keys that could not be read."""
+    """Make a pair of versions; `reads` are the connections before and after, `lost` the keys that could not be read.
+
+    `serving` are the components that name each requirement, before and after.
+    """
     return VersionPair(
         connections(reads[0]),
         connections(reads[1]),
-        before,
-        after,
-        serving or ({}, {}),
+        _add_servers(before, serving[0]) if serving else before,
+        _add_servers(after, serving[1]) if serving else after,
         (frozenset(lost[0].split()), frozenset(lost[1].split())),
     )
+
+
+def _add_servers(
+    elements: dict[ElementKey, ComparedElement], serving: dict[str, frozenset[str]]
+) -> dict[ElementKey, ComparedElement]:
+    requirements: defaultdict[str, set[str]] = defaultdict(set)
+    for requirement, component_ids in serving.items():
+        for component_id in component_ids:
+            requirements[component_id].add(requirement)
+    return elements | {
+        ("component", name): ComparedElement("component", name, name, {"requirements": frozenset(each)})
+        for name, each in requirements.items()
+    }

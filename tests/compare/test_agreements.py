@@ -24,7 +24,7 @@ EMPTY = pipeline.judge_project(
     load_from_files(OverlaidFiles(Path(), {"archgen.yaml": b"archgen: 1"}), "archgen.yaml")
 ).architecture
 NO_ENDS = ConnectionMap({}, {})
-VERSIONS = VersionPair(NO_ENDS, NO_ENDS, {}, {}, ({}, {}))
+VERSIONS = VersionPair(NO_ENDS, NO_ENDS, {}, {})
 PARTNERS = {
     "p": Partner("p", "P", reviewers=("@Paula", "paula@p.example")),
     "q": Partner("q", "Q", reviewers=("@quinn",)),

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections import defaultdict
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from enum import Enum, IntEnum, auto
 from functools import cached_property
 from typing import Any
@@ -165,6 +165,33 @@ def key_values(keys: Sequence[KeySpec], element: object, context: ReadContext) -
             # Such a key reads a mapping, whatever its element; of most elements it is empty.
             values |= {f"{key.name}{name}": inner for name, inner in value.items() if not is_unset(inner)}  # type: ignore[attr-defined]
     return values
+
+
+class KeyValues(Mapping[str, object]):
+    """What `key_values` returns, read when somebody asks first: of what is the same in both versions nobody does."""
+
+    __slots__ = ("_arguments", "_values")
+
+    def __init__(self, keys: Sequence[KeySpec], element: object, context: ReadContext) -> None:
+        self._arguments = (keys, element, context)
+        self._values: dict[str, object] | None = None
+
+    def _read(self) -> dict[str, object]:
+        if self._values is None:
+            self._values = key_values(*self._arguments)
+        return self._values
+
+    def __getitem__(self, name: str) -> object:
+        """Return the value of a key. Raise KeyError where it is not set."""
+        return self._read()[name]
+
+    def __iter__(self) -> Iterator[str]:
+        """Iterate over the names of the keys that are set."""
+        return iter(self._read())
+
+    def __len__(self) -> int:
+        """Return how many keys are set."""
+        return len(self._read())
 
 
 # No key of the language: the rest of the list `owner`.

@@ -182,6 +182,12 @@ def _read_co_owners(node: Node, context: ReadContext) -> frozenset[str]:
     return context.common_ids("partner", () if set(node.owners) == inherited_owners else node.co_owners)
 
 
+def _find_surroundings(node: Node, context: ReadContext) -> object:
+    architecture = context.architecture
+    parts = [(architecture.components[name], name in context.told_components) for name in node.implements]
+    return architecture.distro, architecture.containers.get(node.container or ""), parts
+
+
 NODE = KindSpec(
     "node",
     "Nodes",
@@ -205,6 +211,7 @@ NODE = KindSpec(
     components=lambda node, context: tuple(
         context.matched_ids.common_id("component", component) for component in node.implements
     ),
+    surroundings=_find_surroundings,
 )
 
 

@@ -264,8 +264,11 @@ def _commented_subject(context: ChangeContext, change: Change) -> str:
 def _read_texts(
     context: ChangeContext, old_key: tuple[str, str], new_key: tuple[str, str], text_key: str
 ) -> tuple[str, str]:
+    """Return a text of both versions; nothing of what is the same in both."""
     old_element = context.versions.elements_before.get(old_key)
     new_element = context.versions.elements_after.get(new_key)
+    if old_element is new_element:
+        return "", ""
     before, after = (str(each.values.get(text_key) or "") if each else "" for each in (old_element, new_element))
     return before, after
 

@@ -327,7 +327,7 @@ class _Partings:
             for index, change in enumerate(self._context.changes)
             if change.element_kind == "node"
             for key in [("node", self._context.common_id(change))]
-            if any(word.search(str(side[key].values)) for side in versions.elements if key in side)
+            if any(word.search(str(dict(side[key].values))) for side in versions.elements if key in side)
             and change.element_id != name
         ]
 
