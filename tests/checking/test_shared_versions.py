@@ -116,8 +116,9 @@ def test_what_two_versions_share_is_listed_once_for_a_comparison(tmp_path: Path)
     after = pipeline.check_project(tmp_path, cache)
     found = compare_versions(make_comparison_input(before), make_comparison_input(after))
     old, new = found.versions.elements
-    anew = {name for (kind, name), each in old.items() if kind == "component" and each is not new[kind, name]}
-    assert anew == {f"g5.c{n}" for n in range(10)}
+    for listed_kind, name in (("component", "g5.c"), ("node", "n5_")):
+        anew = {name for (kind, name), each in old.items() if kind == listed_kind and each is not new[kind, name]}
+        assert anew == {f"{name}{n}" for n in range(10)}
     assert [change.key for change in found.changes] == ["title"]
     assert not found.boundaries
 

@@ -193,6 +193,10 @@ class KeyValues(Mapping[str, object]):
         """Return how many keys are set."""
         return len(self._read())
 
+    def __repr__(self) -> str:
+        """Return the values as a dictionary shows them."""
+        return repr(self._read())
+
 
 # No key of the language: the rest of the list `owner`.
 CO_OWNERS = KeySpec(

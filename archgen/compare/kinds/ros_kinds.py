@@ -183,9 +183,8 @@ def _read_co_owners(node: Node, context: ReadContext) -> frozenset[str]:
 
 
 def _find_surroundings(node: Node, context: ReadContext) -> object:
-    architecture = context.architecture
-    parts = [(architecture.components[name], name in context.told_components) for name in node.implements]
-    return architecture.distro, architecture.containers.get(node.container or ""), parts
+    # A node is declared anew where its components or the host of its container are others.
+    return context.architecture.distro, [name in context.told_components for name in node.implements]
 
 
 NODE = KindSpec(
