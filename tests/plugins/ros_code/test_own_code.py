@@ -9,7 +9,7 @@ from pathlib import Path
 
 import pytest
 
-from tests.property_sizes import mark_further_samples, try_some
+from tests.property_sizes import try_some
 from tests.repositories import git
 from tests.running import archgen_here
 
@@ -107,7 +107,7 @@ def generate(folder: Path, backend: str, robot: str, status: int, *more: str) ->
     return [line for line in lines if line.startswith(("error: ", "note: ", "warning: "))]
 
 
-@pytest.fixture(params=mark_further_samples(["ros2_python", "ros1_python"]))
+@pytest.fixture(params=try_some(["ros2_python", "ros1_python"]))
 def backend(request: pytest.FixtureRequest) -> str:
     return str(request.param)
 
