@@ -24,7 +24,7 @@ from archgen.emit import text
 # Answers each request (eight bytes, and three descriptors: the child's input, output and errors) with these bytes and the child's
 # number, and again with its status when it ended.
 _FORKING_CODE = """
-import json, os, socket, sys
+import gc, json, os, socket, sys
 from contextlib import suppress
 from pathlib import Path
 sys.path.insert(0, sys.argv[1])
@@ -64,12 +64,16 @@ while True:
         break
     given = descriptors[0]
     compile_shipped(json.loads(os.pread(given, os.fstat(given).st_size, 0)))
+    gc.freeze()  # no child looks through it, which would copy it
     child = os.fork()
     if not child:
         channel.close()
         for number, descriptor in enumerate(descriptors):
             os.dup2(descriptor, number)
-        main()
+        try:
+            main()
+        except SystemExit as end:  # it has said all: to take down what it imported would cost more than to render
+            os._exit(end.code)
     for descriptor in descriptors:
         os.close(descriptor)
     channel.sendall(request + child.to_bytes(8, "little"))
