@@ -108,6 +108,8 @@ def pytest_configure(config: pytest.Config) -> None:
     # Who hands tests to workers waits for these as long as they take.
     if hasattr(config, "workerinput") or not config.getoption("numprocesses", None):
         bound_waits()
+        # Of what is collected nothing is garbage: to look for it would be a fifth of the time.
+        gc.disable()
     # A test that changes something in this process and runs a verb again wants to see what that does.
     cache.KEPT_VERBS = ()
     config.stash[_HIDING] = ToolHiding(Path(os.environ["XDG_CACHE_HOME"]) / "bare-commands")
@@ -190,6 +192,7 @@ def pytest_collection_finish() -> None:
     gc.freeze()
     # What a test leaves is small beside that; searched for as often as Python likes it would be a thirtieth of all time.
     gc.set_threshold(100_000, 20, 20)
+    gc.enable()
 
 
 _TEMPORARY_FOLDERS = Counter[str]()
