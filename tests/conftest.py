@@ -16,6 +16,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 import pytest
+from _pytest.mark import deselect_by_keyword
 
 from archgen import cache
 from archgen.derivation import derive_low_level
@@ -107,6 +108,8 @@ def pytest_configure(config: pytest.Config) -> None:
     # Who hands tests to workers waits for these as long as they take.
     if hasattr(config, "workerinput") or not config.getoption("numprocesses", None):
         bound_waits()
+        # Of what is collected nothing is garbage: to look for it would be a fifth of the time.
+        gc.disable()
     # A test that changes something in this process and runs a verb again wants to see what that does.
     cache.KEPT_VERBS = ()
     config.stash[_HIDING] = ToolHiding(Path(os.environ["XDG_CACHE_HOME"]) / "bare-commands")
@@ -135,7 +138,7 @@ _HIDING = pytest.StashKey[ToolHiding]()
 
 
 @pytest.hookimpl(tryfirst=True)
-def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
+def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
     """Mark the tests that ask programs from outside, before pytest selects by marks."""
     found: dict[tuple[object, ...], frozenset[str]] = {}
     for item in items:
@@ -150,11 +153,17 @@ def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
                 item.add_marker(mark)
     # First: one of them left for the end would keep one worker, with nothing to do for the others.
     items.sort(key=lambda item: item.path.stem not in _LONGEST)
+    # What `-k` does not name is left to nobody: gone before pytest selects by marks, and counts what these leave out.
+    deselect_by_keyword(items, config)
+    _LEFT_OUT.clear()
 
 
 def pytest_deselected(items: Sequence[pytest.Item]) -> None:
-    _LEFT_OUT.update(mark for item in items for mark in LATER_MARKS if item.get_closest_marker(mark))
-    _LEFT_OUT["all"] += len(items)
+    # Who asks for some marks leaves others out, but not to `make test-all`.
+    if items and "not slow" in items[0].config.getoption("markexpr"):
+        marks = [[mark for mark in LATER_MARKS if item.get_closest_marker(mark)] for item in items]
+        _LEFT_OUT.update(mark for each in marks for mark in each)
+        _LEFT_OUT["all"] += sum(map(bool, marks))
 
 
 def pytest_runtest_setup(item: pytest.Item) -> None:
@@ -172,8 +181,9 @@ def pytest_testnodedown(node: object) -> None:
     _LEFT_OUT.update(Counter(getattr(node, "workeroutput", {}).get("left_out", {})) - _LEFT_OUT)
 
 
-def pytest_terminal_summary(terminalreporter: pytest.TerminalReporter) -> None:
-    for line in describe_left_out(_LEFT_OUT):
+def pytest_terminal_summary(terminalreporter: pytest.TerminalReporter, config: pytest.Config) -> None:
+    are_named = bool(config.getoption("keyword")) or config.args != config.getini("testpaths")
+    for line in describe_left_out(_LEFT_OUT, are_named=are_named):
         terminalreporter.write_line(line)
 
 
@@ -182,6 +192,7 @@ def pytest_collection_finish() -> None:
     gc.freeze()
     # What a test leaves is small beside that; searched for as often as Python likes it would be a thirtieth of all time.
     gc.set_threshold(100_000, 20, 20)
+    gc.enable()
 
 
 _TEMPORARY_FOLDERS = Counter[str]()

@@ -13,6 +13,8 @@ from unittest.mock import patch
 from archgen import pipeline
 from archgen.checking.checked_project import CheckedProject
 from archgen.diagnostics import Diagnostic
+from archgen.emit import backend_manifests
+from archgen.emit.backend_manifests import Backend
 
 _ROOT = Path(__file__).resolve().parents[1]
 _RAMCIP = _ROOT / "example_ramcip"
@@ -22,6 +24,8 @@ SAID_BY_PACKING = frozenset({"borrowed-call", "borrowed-message"})
 _Key = tuple[object, ...]
 _JUDGED: dict[_Key, CheckedProject] = {}
 _check_project = pipeline.check_project
+_read_manifest = backend_manifests._read_manifest  # noqa: SLF001 - tests change no manifest that ships
+_read_shipped_manifest = functools.cache(_read_manifest)
 
 
 def judge_ramcip() -> CheckedProject:
@@ -39,8 +43,16 @@ def judge_shipped(project: Path) -> CheckedProject:
 def judge_shipped_once(*others: Path) -> Iterator[None]:
     """Have verbs judge a shipped project, and those in other folders that are given, again only if it changed."""
     kept_folders = (*_SHIPPED_FOLDERS, *others)
-    with patch.object(pipeline, "check_project", functools.partial(_check_once, kept_folders)):
+    with (
+        patch.object(pipeline, "check_project", functools.partial(_check_once, kept_folders)),
+        patch.object(backend_manifests, "_read_manifest", _read_manifest_once),
+    ):
         yield
+
+
+def _read_manifest_once(folder: Path, name: str) -> Backend:
+    """Read a manifest; those that ship, of which each verb that makes outputs reads all, once for all tests."""
+    return (_read_shipped_manifest if folder.is_relative_to(_ROOT) else _read_manifest)(folder, name)
 
 
 def _check_once(

@@ -189,11 +189,16 @@ def _is_of_tests(module_name: str) -> bool:
     return module_name.startswith("tests.")
 
 
-def describe_left_out(counts: Mapping[str, int]) -> Iterator[str]:
-    """Say how many tests of each sort were left to `make test-all`; `all` is how many there are, some of several sorts."""
+def describe_left_out(counts: Mapping[str, int], *, are_named: bool = False) -> Iterator[str]:
+    """Say how many tests of each sort were left to `make test-all`; `all` is how many there are, some of several sorts.
+
+    Where files or names of tests were given, they are only those among them.
+    """
     counted = [f"{counts[mark]} {words}" for mark, words in LATER_MARKS.items() if counts.get(mark)]
     if counted:
-        yield f"{counts['all']} tests are left to `make test-all`, which installs what they need: {', '.join(counted)}."
+        whose, here = (" of those named", ', and `-m ""` takes them in') if are_named else ("", "")
+        left = f"{counts['all']} tests{whose} are left to `make test-all`"
+        yield f"{left}, which installs what they need and runs them{here}: {', '.join(counted)}."
 
 
 class ToolHiding:

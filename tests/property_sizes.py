@@ -49,37 +49,25 @@ def count_examples(full_count: int) -> int:
     return full_count if settings.get_current_profile_name() == FULL_PROFILE else max(1, full_count // _QUICK_SHARE)
 
 
-def list_seeds(full_count: int) -> list[int | pytest.ParameterSet]:
+def list_seeds(full_count: int) -> list[pytest.ParameterSet]:
     """Return the numbers below `full_count` for a test that draws by one: an eighth for `make test`, a third for `make test-all`."""
     quick_count = max(1, full_count // _QUICK_SEED_SHARE)
-    shown_count = max(quick_count, full_count // _SEED_SHARE)
-    return [*range(quick_count), *mark_slow_samples(range(quick_count, full_count), shown_count - quick_count)]
+    return try_some(range(full_count), quick_count, max(quick_count, full_count // _SEED_SHARE))
 
 
-def mark_further_samples(samples: Iterable[object], count: int | None = None) -> list[object]:
-    """Return samples for a test that takes seconds for each: `make test` tries it on the first, `make test-all` on `count`.
+def try_some(
+    samples: Iterable[object], quick_count: int = 1, shown_count: int | None = None
+) -> list[pytest.ParameterSet]:
+    """Return samples of which `make test-all` tries the first `shown_count`, and `make test` so many from all over these.
 
     All that are beyond those are for `make properties`. A sample of several parameters is a tuple.
     """
-    first, *others = samples
-    return [first, *mark_slow_samples(others, len(others) if count is None else count - 1)]
-
-
-def mark_slow_samples(samples: Iterable[object], count: int) -> list[pytest.ParameterSet]:
-    """Mark samples of which `make test-all` tries the first `count`, and `make properties` the others."""
     values = list(samples)
-    further = [_mark_sample(each, pytest.mark.hypothesis) for each in values[count:]]
-    return [*(_mark_sample(each, pytest.mark.slow) for each in values[:count]), *(further if DRAWS_ANEW else ())]
-
-
-def try_some(samples: Iterable[object], quick_count: int) -> list[pytest.ParameterSet]:
-    """Return samples of which `make test` tries `quick_count` from all over them, and `make test-all` each.
-
-    A sample of several parameters is a tuple.
-    """
-    values = list(samples)
-    quick = {index * len(values) // quick_count for index in range(quick_count)}
-    return [_mark_sample(each, *(() if index in quick else (pytest.mark.slow,))) for index, each in enumerate(values)]
+    shown = values[:shown_count]
+    quick = {index * len(shown) // quick_count for index in range(quick_count)}
+    marked = [_mark_sample(each, *(() if index in quick else (pytest.mark.slow,))) for index, each in enumerate(shown)]
+    further = [_mark_sample(each, pytest.mark.hypothesis) for each in values[len(shown) :]]
+    return [*marked, *(further if DRAWS_ANEW else ())]
 
 
 def _mark_sample(sample: object, *marks: pytest.MarkDecorator) -> pytest.ParameterSet:

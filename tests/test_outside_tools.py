@@ -24,6 +24,7 @@ from tests.outside_tools import (
     run_judge,
 )
 from tests.plugins.ros_code.cpp_compiler import compile_package
+from tests.property_sizes import try_some
 from tests.running import ROOT
 
 _ASK_COMPILER = functools.partial(find_tool, "javac")
@@ -124,9 +125,66 @@ def test_each_mark_is_left_out_by_make_test_and_tried_by_make_test_all() -> None
 
 
 def test_the_end_says_what_was_left_out() -> None:
-    (line,) = describe_left_out({"all": 12, "browser": 3, "ros": 1, "slow": 9})
+    counts = {"all": 12, "browser": 3, "ros": 1, "slow": 9}
+    (line,) = describe_left_out(counts)
     assert line == (
-        "12 tests are left to `make test-all`, which installs what they need: "
+        "12 tests are left to `make test-all`, which installs what they need and runs them: "
         "3 want a browser, 1 ROS, 9 take long or try further samples."
     )
+    (line,) = describe_left_out(counts, are_named=True)
+    assert line == (
+        "12 tests of those named are left to `make test-all`, which installs what they need and runs them, "
+        'and `-m ""` takes them in: 3 want a browser, 1 ROS, 9 take long or try further samples.'
+    )
     assert list(describe_left_out({})) == []
+
+
+_MARKED_TESTS = """
+import pytest
+
+def test_quick(): pass
+
+@pytest.mark.slow
+def test_long(): pass
+
+@pytest.mark.slow
+@pytest.mark.browser
+def test_long_page(): pass
+
+@pytest.mark.build
+def test_wheel(): pass
+"""
+
+
+@pytest.mark.parametrize(
+    ("words", "counts"),
+    try_some(
+        [
+            (("-k", "test_long"), {"all": 2, "browser": 1, "slow": 2}),
+            ((), {"all": 3, "browser": 1, "build": 1, "slow": 2}),
+            # It leaves out what is marked, and marks leave out nothing more.
+            (("-k", "quick"), {}),
+            (("-m", ""), {}),
+            (("-m", "slow"), {}),
+        ]
+    ),
+)
+def test_only_what_the_marks_leave_out_is_counted(
+    words: tuple[str, ...], counts: dict[str, int], tmp_path: Path
+) -> None:
+    (tmp_path / "test_marked.py").write_text(_MARKED_TESTS, encoding="utf-8")
+    options = (
+        "--co",
+        "-q",
+        "-p",
+        "no:xdist",
+        "-p",
+        "tests.conftest",
+        f"--rootdir={ROOT}",
+        "-c",
+        ROOT / "pyproject.toml",
+    )
+    command: list[str | Path] = [sys.executable, "-m", "pytest", *options, *words, tmp_path / "test_marked.py"]
+    done = subprocess.run(command, capture_output=True, text=True, check=False, cwd=ROOT)  # noqa: S603 - our own tests
+    said = [line for line in done.stdout.splitlines() if "left to" in line]
+    assert said == list(describe_left_out(counts, are_named=True)), done.stdout + done.stderr

@@ -16,7 +16,6 @@ from tests.property_sizes import (
     choose_profile,
     count_examples,
     list_seeds,
-    mark_further_samples,
     try_some,
 )
 
@@ -67,44 +66,42 @@ def test_no_property_fails_for_the_time_that_it_takes(pytestconfig: pytest.Confi
     assert settings(max_examples=count_examples(400)).deadline is None
 
 
-def _sort_by_mark(samples: Iterable[object]) -> dict[str, list[object]]:
+def _sort_by_mark(samples: Iterable[pytest.ParameterSet]) -> dict[str, list[object]]:
     """Return the samples that `make test` tries, those that `make test-all` does (`slow`), and those of `make properties`."""
     sorted_samples = dict[str, list[object]]()
     for sample in samples:
-        marks, value = ["quick"], sample
-        if isinstance(sample, pytest.ParameterSet):
-            marks, value = [mark.name for mark in sample.marks], sample.values
-        sorted_samples.setdefault(" ".join(marks), []).append(value)
+        marks = " ".join(mark.name for mark in sample.marks) or "quick"
+        sorted_samples.setdefault(marks, []).append(sample.values if len(sample.values) > 1 else sample.values[0])
     return sorted_samples
 
 
-def _list_single(numbers: Iterable[int]) -> list[tuple[int]]:
-    return [(number,) for number in numbers]
-
-
-@pytest.mark.parametrize(("count", "quick_count", "shown_count"), [(1, 1, 1), (3, 1, 1), (16, 2, 5), (40, 5, 13)])
+@pytest.mark.parametrize(
+    ("count", "quick", "shown_count"), [(1, [0], 1), (3, [0], 1), (16, [0, 2], 5), (40, [0, 2, 5, 7, 10], 13)]
+)
 def test_an_eighth_of_the_seeds_is_tried_at_once_and_a_third_by_all_tests(
-    count: int, quick_count: int, shown_count: int, monkeypatch: pytest.MonkeyPatch
+    count: int, quick: list[int], shown_count: int, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    shown = {"quick": [*range(quick_count)], "slow": _list_single(range(quick_count, shown_count))}
+    shown = {"quick": quick, "slow": [seed for seed in range(shown_count) if seed not in quick]}
     monkeypatch.setattr(property_sizes, "DRAWS_ANEW", False)
     assert {"slow": [], **_sort_by_mark(list_seeds(count))} == shown
     # `make properties` leaves none out.
     monkeypatch.setattr(property_sizes, "DRAWS_ANEW", True)
-    further = _list_single(range(shown_count, count))
-    assert {"slow": [], "hypothesis": [], **_sort_by_mark(list_seeds(count))} == {**shown, "hypothesis": further}
+    further = {"hypothesis": [*range(shown_count, count)]}
+    assert {"slow": [], "hypothesis": [], **_sort_by_mark(list_seeds(count))} == {**shown, **further}
 
 
 @pytest.mark.parametrize("draws_anew", [False, True])
-def test_the_first_sample_is_tried_at_once_and_none_is_left_out(
+def test_some_from_all_over_the_samples_are_tried_at_once_and_none_is_left_out(
     draws_anew: bool,  # noqa: FBT001 - a parameter
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     monkeypatch.setattr(property_sizes, "DRAWS_ANEW", draws_anew)
-    assert _sort_by_mark(mark_further_samples("abc")) == {"quick": ["a"], "slow": [("b",), ("c",)]}
-    assert _sort_by_mark(mark_further_samples([(1, "a"), (2, "b")])) == {"quick": [(1, "a")], "slow": [(2, "b")]}
-    further = {"hypothesis": [("c",), ("d",)]} if draws_anew else {}
-    assert _sort_by_mark(mark_further_samples("abcd", 2)) == {"quick": ["a"], "slow": [("b",)], **further}
+    assert _sort_by_mark(try_some("abc")) == {"quick": ["a"], "slow": ["b", "c"]}
+    assert _sort_by_mark(try_some([(1, "a"), (2, "b")])) == {"quick": [(1, "a")], "slow": [(2, "b")]}
+    assert _sort_by_mark(try_some("abcdef", 3)) == {"quick": ["a", "c", "e"], "slow": ["b", "d", "f"]}
+    further = {"hypothesis": ["e", "f"]} if draws_anew else {}
+    assert _sort_by_mark(try_some("abcdef", 2, 4)) == {"quick": ["a", "c"], "slow": ["b", "d"], **further}
+    assert _sort_by_mark(try_some("abcdef", 0, 4)) == {"slow": ["a", "b", "c", "d"], **further}
 
 
 def _draw() -> list[tuple[str, int]]:
@@ -128,7 +125,7 @@ def test_the_same_is_drawn_whatever_was_imported_before(tmp_path: Path, monkeypa
     assert _draw() == before
 
 
-def test_some_from_all_over_the_samples_are_quick_and_none_is_left_out() -> None:
+def test_a_sample_keeps_its_own_marks_and_name() -> None:
     named = pytest.param("c", marks=pytest.mark.build, id="third")
     tried = try_some(["a", ("b",), named, "d"], 2)
     assert [(each.values, [mark.name for mark in each.marks], each.id) for each in tried] == [

@@ -175,7 +175,7 @@ def checkout_with_crlf(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 @pytest.mark.parametrize(
     "verb",
-    try_some(["check --format json", "list --of connections --format csv", "timing --format json", "pack -o -"], 1),
+    try_some(["check --format json", "list --of connections --format csv", "timing --format json", "pack -o -"]),
 )
 def test_a_checkout_with_crlf_says_the_same(checkout_with_crlf: Path, verb: str) -> None:
     said = [archgen_here(*verb.split(), cwd=place).stdout for place in (RAMCIP, checkout_with_crlf)]

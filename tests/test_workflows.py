@@ -16,7 +16,7 @@ import yaml
 from archgen.resources import REPOSITORY
 from tests import repositories
 from tests.outside_tools import run_judge
-from tests.property_sizes import mark_further_samples
+from tests.property_sizes import try_some
 from tests.running import ROOT
 
 FILES = (
@@ -253,7 +253,7 @@ def merge_branches(folder: Path) -> tuple[str, str]:
     return fork, tip
 
 
-@pytest.mark.parametrize("kind", mark_further_samples(["merged_result", "merge_train"]))
+@pytest.mark.parametrize("kind", try_some(["merged_result", "merge_train"]))
 def test_a_merged_results_pipeline_of_gitlab_tells_only_what_the_request_changes(
     tmp_path: Path, runner: Path, kind: str
 ) -> None:

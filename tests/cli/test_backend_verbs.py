@@ -11,7 +11,7 @@ import pytest
 from archgen.emit.backend_manifests import find_backends
 from tests import repositories
 from tests.cli.conftest import Run
-from tests.running import ROOT, archgen, contents
+from tests.running import ROOT, archgen, archgen_here, contents
 
 PROJECT = """\
 archgen: 1
@@ -82,10 +82,10 @@ def test_errors_remove_nothing_that_was_generated(run: Run, robot: Path) -> None
 
 
 def test_export_makes_a_file(robot: Path, tmp_path: Path) -> None:
-    for words in ((), ("-o", "-")):
-        done = archgen("export", "table", *words, cwd=robot)
+    for run_verb, words in ((archgen, ()), (archgen_here, ("-o", "-"))):
+        done = run_verb("export", "table", *words, cwd=robot)
         assert (done.stdout, done.stderr) == ("table: ä\n".encode(), b"")
-    done = archgen("export", "table", "-o", tmp_path / "new" / "t.csv", cwd=robot)
+    done = archgen_here("export", "table", "-o", tmp_path / "new" / "t.csv", cwd=robot)
     assert done.stdout.decode() == f"wrote {tmp_path / 'new' / 't.csv'}\n"
     assert (tmp_path / "new" / "t.csv").read_text("utf-8") == "table: ä\n"
     assert sorted(contents(tmp_path / "new")) == ["t.csv"]
@@ -182,11 +182,11 @@ def test_a_backend_cannot_be_called_as_an_output(run: Run, robot: Path, tmp_path
 @pytest.mark.parametrize("verb", [("generate", "code"), pytest.param(("export", "table"), marks=pytest.mark.slow)])
 def test_backends_of_a_branch_run_only_if_the_main_line_names_them(robot: Path, verb: tuple[str, str]) -> None:
     repositories.repository(robot, {"archgen.yaml": PROJECT})
-    done = archgen(*verb, "--trust", "main", "-o", "out", cwd=robot, status=2)
+    done = archgen_here(*verb, "--trust", "main", "-o", "out", cwd=robot, status=2)
     assert f"the project's own backend `{verb[1]}` is not run here".encode() in done.stderr
     assert not (robot / "out").exists()
     repositories.commit(robot, {"archgen.yaml": f"{PROJECT}review: {{backends: [{verb[1]}]}}\n"})
-    archgen(*verb, "--trust", "main", "-o", "out", cwd=robot)
+    archgen_here(*verb, "--trust", "main", "-o", "out", cwd=robot)
     assert (robot / "out").exists()
 
 
@@ -278,5 +278,5 @@ def test_names_are_completed(robot: Path, words: str, names: list[str]) -> None:
         "COMP_WORDS": " ".join((*done_words, last_word)),
         "COMP_CWORD": str(len(done_words)),
     }
-    done = archgen(cwd=robot, env=environment)
+    done = archgen_here(cwd=robot, env=environment)
     assert [line.partition(",")[2] for line in done.stdout.decode().splitlines()] == names

@@ -9,7 +9,6 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from mcp import Client, StdioServerParameters
 
 from archgen.cli.mcp_command import make_server
 from tests.cli.conftest import ROOT, Run
@@ -19,6 +18,9 @@ TEXT = "archgen: 1\ngroups:\n  sense:\n    components:\n      eye: {outputs: {im
 
 
 async def _ask(server: object, questions: list[tuple[str, dict[str, Any]]]) -> list[tuple[bool, str]]:
+    # To import it takes longer than these tests: it is left to the process that runs them.
+    from mcp import Client
+
     async with Client(server) as client:  # type: ignore[arg-type] # a server or how to start one
         answers = [await client.call_tool(name, arguments) for name, arguments in questions]
         return [(bool(each.is_error), "".join(getattr(part, "text", "") for part in each.content)) for each in answers]
@@ -120,6 +122,8 @@ def test_what_cannot_be_proposed_is_refused_in_words(tmp_path: Path, file: str, 
 
 
 def test_the_verb_speaks_on_its_streams(tmp_path: Path) -> None:
+    from mcp import StdioServerParameters
+
     (tmp_path / "archgen.yaml").write_text(TEXT)
     words = ["-m", "archgen", "mcp", "-C", str(tmp_path)]
     ((is_error, text),) = ask(StdioServerParameters(command=sys.executable, args=words), ("find", {"words": "eye"}))

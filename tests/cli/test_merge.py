@@ -74,7 +74,7 @@ GRAPH = {
 
 
 @pytest.mark.parametrize("is_ours", [True, False])
-@pytest.mark.parametrize("change", try_some(["rename and split", "rename", "split"], 1))
+@pytest.mark.parametrize("change", try_some(["rename and split", "rename", "split"]))
 def test_what_one_side_renamed_or_split_off_takes_what_the_other_one_changed(
     run: Run, robot: Path, change: str, *, is_ours: bool
 ) -> None:

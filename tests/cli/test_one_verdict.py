@@ -17,7 +17,7 @@ import pytest
 from lxml import etree
 
 from tests.cli.conftest import Run
-from tests.property_sizes import DRAWS_ANEW, mark_further_samples
+from tests.property_sizes import DRAWS_ANEW, try_some
 from tests.timing.random_robots import random_robot_text
 
 _UNITS = {"ns": Fraction(1), "us": Fraction(10**3), "µs": Fraction(10**3), "ms": Fraction(10**6), "s": Fraction(10**9)}
@@ -196,7 +196,7 @@ def check_lists(run: Run, robot: Path, chains: dict[str, dict[str, object]]) -> 
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("seed", mark_further_samples([24, 17, 51]))
+@pytest.mark.parametrize("seed", try_some([24, 17, 51]))
 def test_what_is_read_and_written_quickly_says_the_same(run: Run, tmp_path: Path, seed: int) -> None:
     assert read_quick(run, tmp_path, seed)
 

@@ -18,7 +18,7 @@ from tests.cli import varied_outputs
 from tests.cli.conftest import Run
 from tests.cli.varied_outputs import Agreement, Rows, list_records, read_figure, read_words
 from tests.cli.varied_robots import draw_project
-from tests.property_sizes import DRAWS_ANEW, mark_further_samples
+from tests.property_sizes import DRAWS_ANEW, try_some
 
 _HOST_WORDS = {
     "schedulable": {"in time"},
@@ -244,7 +244,7 @@ def hold_matrix(held: Agreement, written: Written, sums: dict[str, list[str]], t
         held.expect("sums", f"{title} gives", int((re.match(r"\d+", gives) or ["0"])[0]), count)
 
 
-@pytest.mark.parametrize("seed", mark_further_samples([6, 1103, 4, 5, 1042, 1004], 2))
+@pytest.mark.parametrize("seed", try_some([6, 1103, 4, 5, 1042, 1004], 1, 2))
 def test_no_output_contradicts_another(run: Run, tmp_path: Path, seed: int) -> None:
     assert list_contradictions(run, write_outputs(run, tmp_path, seed)) == []
 

@@ -9,7 +9,7 @@ import pytest
 
 from archgen import resources
 from tests.cli.conftest import Run
-from tests.property_sizes import mark_further_samples
+from tests.property_sizes import try_some
 from tests.timing.chains.test_missing_figures import HEAVY, ROBOT
 
 _HOT = HEAVY.replace("8 ms", "12 ms")
@@ -121,7 +121,7 @@ def test_what_nobody_wrote_of_jitter_is_said_once(run: Run, tmp_path: Path) -> N
     assert said.count("no jitter is written for 2 of 3 periodic elements: taken to start exactly by their clocks") == 1
 
 
-@pytest.mark.parametrize("width", mark_further_samples([60, 100]))
+@pytest.mark.parametrize("width", try_some([60, 100]))
 @pytest.mark.parametrize(
     "question",
     [

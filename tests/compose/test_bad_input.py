@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from tests.judged_projects import check_text
-from tests.property_sizes import mark_further_samples
+from tests.property_sizes import try_some
 
 DEPTH = 3000
 
@@ -27,9 +27,7 @@ def test_types_that_are_made_from_one_another_thousands_of_times_are_too_large()
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize(
-    ("first_source", "is_fed"), mark_further_samples([("source.o", True), (f"c{DEPTH - 1}.o", False)])
-)
+@pytest.mark.parametrize(("first_source", "is_fed"), try_some([("source.o", True), (f"c{DEPTH - 1}.o", False)]))
 def test_what_only_passes_on_may_stand_in_thousands_behind_one_another(first_source: str, *, is_fed: bool) -> None:
     """A chain of components that hand their input on; and one that ends where it began, so that nothing comes."""
     lines = "".join(

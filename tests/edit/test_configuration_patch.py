@@ -12,7 +12,7 @@ from archgen.edit.element_edit import EditRefusedError
 from archgen.timing.chains.chain_bounds import bound_all_chains
 from archgen.timing.run_analysis import analyse_architecture
 from archgen.timing.search.proposals import TriedConfiguration, find_proposal
-from tests.property_sizes import mark_further_samples
+from tests.property_sizes import try_some
 from tests.repositories import git
 from tests.timing.search.trials import start_trials
 
@@ -54,7 +54,7 @@ def _bound(path: Path) -> dict[str, object]:
     return {name: chain.bound.value for name, chain in chains.items()}
 
 
-@pytest.mark.parametrize("ending", mark_further_samples(["\r\n", "\n"]))
+@pytest.mark.parametrize("ending", try_some(["\r\n", "\n"]))
 def test_git_applies_the_patch_of_the_newcomers_robot(tmp_path: Path, ending: str) -> None:
     robot = tmp_path / "robot.yaml"
     before = ROBOT.read_text(encoding="utf-8").rstrip("\n").replace("\n", ending)

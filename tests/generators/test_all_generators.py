@@ -20,7 +20,7 @@ from archgen.products.workspace_product import write_workspace
 from tests import hostile
 from tests.judged_projects import judge_shipped
 from tests.outside_tools import run_judge
-from tests.property_sizes import mark_further_samples, try_some
+from tests.property_sizes import try_some
 from tests.running import ROOT, contents
 
 GENERATORS = [name for name, each in find_backends(ROOT / "docs")[0].items() if each.makes == "workspace"]
@@ -45,7 +45,7 @@ def _check_files(folder: Path) -> None:
             run_judge(shell, "-n", stdin=text)
 
 
-@pytest.fixture(scope="module", params=mark_further_samples(hostile.TEXTS))
+@pytest.fixture(scope="module", params=try_some(hostile.TEXTS))
 def hostile_project(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory) -> CheckedProject:
     folder = tmp_path_factory.mktemp("hostile")
     (folder / "archgen.yaml").write_text(hostile.written(hostile.project(hostile.TEXTS[request.param])), "utf-8")
@@ -68,7 +68,7 @@ def test_hostile_text_stays_text(generator: str, hostile_project: CheckedProject
     assert {path.name for path in tmp_path.iterdir()} <= {"ws"}
 
 
-@pytest.fixture(scope="module", params=mark_further_samples(["examples/cleaning_robot", "example_ramcip"]))
+@pytest.fixture(scope="module", params=try_some(["examples/cleaning_robot", "example_ramcip"]))
 def judged_twice(request: pytest.FixtureRequest) -> tuple[CheckedProject, CheckedProject]:
     """Judge a project twice, which takes longer than what a generator does with it."""
     return judge_shipped(ROOT / request.param), check_project(ROOT / request.param)

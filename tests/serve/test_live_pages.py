@@ -12,7 +12,7 @@ from archgen.serve.live_site import LiveSite
 from archgen.serve.site_server import SiteServer
 from tests.browser_pages import OpenPage, expect, judge_with_axe, watch_pages
 from tests.browser_polling import wait_until
-from tests.property_sizes import mark_further_samples
+from tests.property_sizes import try_some
 from tests.serve.conftest import ROBOT
 
 if TYPE_CHECKING:
@@ -194,8 +194,8 @@ def test_what_is_tried_out_stays_when_a_file_changes(visit: OpenPage, save: Save
     expect(page.get_by_label("Execution time of eye")).to_have_value("50 ms")
 
 
-@pytest.mark.parametrize("scheme", mark_further_samples(["light", "dark"]))
-@pytest.mark.parametrize("width", mark_further_samples([360, 1280]))
+@pytest.mark.parametrize("scheme", try_some(["light", "dark"]))
+@pytest.mark.parametrize("width", try_some([360, 1280]))
 def test_axe_finds_nothing(visit: OpenPage, save: Save, width: int, scheme: str) -> None:
     page = visit("chains/stop.html", width=width, scheme=scheme)
     page.get_by_label("Execution time of eye").fill("150 ms")

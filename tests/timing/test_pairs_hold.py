@@ -9,7 +9,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from tests.property_sizes import DRAWS_ANEW, count_examples, mark_further_samples
+from tests.property_sizes import DRAWS_ANEW, count_examples, try_some
 from tests.timing.exceeded import exceeded_by
 from tests.timing.random_pairs import list_pairs, random_pair_text, read_variants
 
@@ -17,7 +17,7 @@ _SYSTEMS = 55 if DRAWS_ANEW else 30
 """Of each of the 91 pairs: 5,000 in all are drawn anew by `make properties`."""
 
 
-@pytest.mark.parametrize(("first", "second"), mark_further_samples(list_pairs()))
+@pytest.mark.parametrize(("first", "second"), try_some(list_pairs()))
 @given(seed=st.integers(0, 10**9))
 @settings(max_examples=count_examples(_SYSTEMS))
 def test_no_simulation_exceeds_a_bound_where_two_features_meet(first: str, second: str, seed: int) -> None:

@@ -17,7 +17,7 @@ from archgen.views.drawings_on_demand import DrawingsOnDemand
 from archgen.views.pages import partner_pages, site_pages
 from archgen.views.pages.report_outline import DetailLevel
 from archgen.views.pages.single_page import make_page_at
-from tests.property_sizes import mark_further_samples
+from tests.property_sizes import try_some
 
 PROJECTS = Path(__file__).parents[2]
 LEVELS = get_args(DetailLevel)
@@ -29,7 +29,7 @@ def _check(name: str) -> CheckedProject:
 
 
 @pytest.mark.parametrize("level", LEVELS)
-@pytest.mark.parametrize("name", mark_further_samples(["examples/first_robot", "example_ramcip"]))
+@pytest.mark.parametrize("name", try_some(["examples/first_robot", "example_ramcip"]))
 def test_each_drawing_is_the_one_of_the_whole_set(name: str, level: DetailLevel) -> None:
     views = project_views.make_views(_check(name), OutputOptions(level=level, show_history=False))
     names = list(views.drawings)

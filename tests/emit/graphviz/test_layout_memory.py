@@ -13,7 +13,7 @@ from archgen.views.graphs import draw_components, group_columns
 from archgen.views.lookup import make_lookup
 from archgen.views.picture_shapes import Arrow, Box, Graph
 from tests.architectures import robot
-from tests.property_sizes import mark_further_samples
+from tests.property_sizes import try_some
 
 GRAPH = draw_components(make_lookup(robot(1)))
 
@@ -72,7 +72,7 @@ def test_what_decides_the_layout_is_tried_anew(change: Graph, tmp_path: Path, mo
 
 
 @pytest.mark.parametrize(
-    "damage", mark_further_samples([b'["a", ["b"], 1]', b"", b"null", b'["rankdir"', b"3", b"\xff", b'["a", 3]'])
+    "damage", try_some([b'["a", ["b"], 1]', b"", b"null", b'["rankdir"', b"3", b"\xff", b'["a", 3]'])
 )
 @pytest.mark.parametrize("graph", [GRAPH, GROUPS], ids=["frames", "columns"])
 def test_a_damaged_file_is_not_taken(graph: Graph, damage: bytes, tmp_path: Path) -> None:

@@ -23,7 +23,7 @@ from archgen.views.lookup import make_lookup
 from archgen.views.picture_shapes import Arrow, Box, Cluster, Graph
 from tests.architectures import generated, robot
 from tests.emit.graphviz.overlaps import overlapping_parts, rectangles_meet
-from tests.property_sizes import list_seeds, mark_further_samples
+from tests.property_sizes import list_seeds, try_some
 from tests.timings import timed
 
 ROBOT = make_all_graphs(robot(1))
@@ -63,7 +63,7 @@ def test_pictures_of_a_robot(graph: Graph) -> None:
     assert sum(arrow.count for arrow in graph.arrows) == graph.asked
 
 
-@pytest.mark.parametrize("example", mark_further_samples(["examples/first_robot", "example_ramcip"]))
+@pytest.mark.parametrize("example", try_some(["examples/first_robot", "example_ramcip"]))
 def test_pictures_of_timing(example: str) -> None:
     architecture = pipeline.check_project(Path(__file__).parents[3] / example).architecture
     graphs = [g for g in make_all_graphs(architecture, timed=timed(architecture)) if g.id.startswith("timing")]
@@ -71,7 +71,7 @@ def test_pictures_of_timing(example: str) -> None:
     assert [(graph.id, wrong) for graph in graphs if (wrong := faults(graph))] == []
 
 
-@pytest.mark.parametrize("example", mark_further_samples(["examples/first_robot", "example_ramcip"]))
+@pytest.mark.parametrize("example", try_some(["examples/first_robot", "example_ramcip"]))
 def test_pictures_of_the_examples(example: str) -> None:
     checked = pipeline.check_project(Path(__file__).parents[3] / example)
     graphs = make_all_graphs(checked.architecture, findings=checked.findings)

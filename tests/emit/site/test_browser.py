@@ -14,7 +14,7 @@ from archgen.views import shapes
 from tests.browser_pages import OpenPage, judge_with_axe
 from tests.emit.site.conftest import drawn
 from tests.outside_tools import ask_nu_checker
-from tests.property_sizes import mark_further_samples, mark_slow_samples
+from tests.property_sizes import try_some
 
 if TYPE_CHECKING:
     from playwright.sync_api import Browser, Page, Route
@@ -115,13 +115,13 @@ def test_the_nu_checker_finds_nothing_in_the_case_study(example: Path) -> None:
 
 
 # The other two pairs are tried with the case study.
-@pytest.mark.parametrize(("width", "scheme"), mark_further_samples([(360, "dark"), (1280, "light")]))
+@pytest.mark.parametrize(("width", "scheme"), try_some([(360, "dark"), (1280, "light")]))
 def test_axe_finds_nothing(visit: OpenPage, width: int, scheme: str) -> None:
     for path in SAMPLE:
         assert judge_with_axe(visit(path, width, scheme)) == [], path
 
 
-@pytest.mark.parametrize(("width", "scheme"), mark_slow_samples([(360, "light"), (1280, "dark")], 1))
+@pytest.mark.parametrize(("width", "scheme"), try_some([(360, "light"), (1280, "dark")], 0, 1))
 def test_the_case_study_in_chromium(visit: OpenPage, example: Path, width: int, scheme: str) -> None:
     for path in EXAMPLE:
         page = visit(path, width, scheme, example)

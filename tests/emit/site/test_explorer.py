@@ -21,7 +21,7 @@ from archgen.views.timing.timing_lookup import analyse_with_chains
 from tests.browser_pages import OpenPage, expect, judge_with_axe, watch_pages
 from tests.browser_polling import wait_until
 from tests.emit.site.conftest import write_bare_site
-from tests.property_sizes import mark_further_samples
+from tests.property_sizes import try_some
 from tests.running import RAMCIP
 
 if TYPE_CHECKING:
@@ -391,7 +391,7 @@ def test_a_list_has_all_that_the_map_has(visit: OpenPage) -> None:
     assert page.locator(".panel h2").inner_text() == "Human Model"
 
 
-@pytest.mark.parametrize("scheme", mark_further_samples(["dark", "light"]))
+@pytest.mark.parametrize("scheme", try_some(["dark", "light"]))
 @pytest.mark.parametrize(
     "hash_",
     ["", "#open=human_state&sel=2%2Bfall_detector%2B1&pick=human_state.fall_detector&colour=owner", "#view=list"],

@@ -11,7 +11,7 @@ import pytest
 
 from tests.browser_pages import OpenPage, expect, judge_with_axe, watch_pages
 from tests.emit.site.conftest import write_bare_site
-from tests.property_sizes import mark_further_samples
+from tests.property_sizes import try_some
 from tests.running import ROOT
 
 if TYPE_CHECKING:
@@ -253,7 +253,7 @@ def test_a_saved_picture_has_what_is_open(visit: OpenPage, tmp_path: Path) -> No
     assert 'stroke-linecap="round"' in text
 
 
-@pytest.mark.parametrize("scheme", mark_further_samples(["light", "dark"]))
+@pytest.mark.parametrize("scheme", try_some(["light", "dark"]))
 @pytest.mark.parametrize("hash_", ["#open=cleaning.left_arm&pick=cleaning.left_arm", "#open=**&view=list"])
 def test_axe_finds_nothing(visit: OpenPage, scheme: str, hash_: str) -> None:
     assert judge_with_axe(visit(hash_, scheme=scheme)) == []

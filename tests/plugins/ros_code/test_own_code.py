@@ -2,14 +2,16 @@
 
 from __future__ import annotations
 
+import shutil
 import subprocess
 import sys
 from collections.abc import Callable
+from functools import cache
 from pathlib import Path
 
 import pytest
 
-from tests.property_sizes import mark_further_samples, try_some
+from tests.property_sizes import try_some
 from tests.repositories import git
 from tests.running import archgen_here
 
@@ -107,18 +109,31 @@ def generate(folder: Path, backend: str, robot: str, status: int, *more: str) ->
     return [line for line in lines if line.startswith(("error: ", "note: ", "warning: "))]
 
 
-@pytest.fixture(params=mark_further_samples(["ros2_python", "ros1_python"]))
+@pytest.fixture(params=try_some(["ros2_python", "ros1_python"]))
 def backend(request: pytest.FixtureRequest) -> str:
     return str(request.param)
 
 
+@pytest.fixture(scope="module")
+def make_farm(tmp_path_factory: pytest.TempPathFactory) -> Callable[[str], Path]:
+    """Make a workspace with own code for all nodes, that fits, once for each backend."""
+
+    @cache
+    def make(backend: str) -> Path:
+        folder = tmp_path_factory.mktemp("farm")
+        generate(folder, backend, ROBOT, 0)
+        for name, text in FILES.items():
+            find_own(folder, name, backend).write_text(text, encoding="utf-8")
+        assert generate(folder, backend, ROBOT, 0) == []
+        return folder
+
+    return make
+
+
 @pytest.fixture
-def farm(tmp_path: Path, backend: str) -> Path:
-    """Return a folder with a workspace in which own code is written for all nodes, and fits."""
-    generate(tmp_path, backend, ROBOT, 0)
-    for name, text in FILES.items():
-        find_own(tmp_path, name, backend).write_text(text, encoding="utf-8")
-    assert generate(tmp_path, backend, ROBOT, 0) == []
+def farm(tmp_path: Path, backend: str, make_farm: Callable[[str], Path]) -> Path:
+    """Return a folder with such a workspace for one test."""
+    shutil.copytree(make_farm(backend), tmp_path, dirs_exist_ok=True)
     return tmp_path
 
 

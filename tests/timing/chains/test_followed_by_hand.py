@@ -18,7 +18,7 @@ from archgen.timing.chains.figure_explanations import explain_word
 from archgen.timing.load.queue_responses import QUEUE_TIERS
 from archgen.timing.load.response_terms import ResponseTerms
 from archgen.timing.run_analysis import analyse_architecture
-from tests.property_sizes import list_seeds, mark_further_samples
+from tests.property_sizes import list_seeds, try_some
 from tests.running import RAMCIP
 from tests.timing.hand_reader import read_equations
 from tests.timing.random_styles import random_style_text
@@ -192,7 +192,7 @@ def test_on_several_cores_the_own_threads_and_the_time_in_which_all_cores_are_bu
     assert min(blocked, added) > 1
 
 
-@pytest.mark.parametrize("study", mark_further_samples(["case_study", "unpinned_case_study"]))
+@pytest.mark.parametrize("study", try_some(["case_study", "unpinned_case_study"]))
 def test_how_long_messages_wait_to_be_stored_follows_from_the_work_that_is_listed(
     study: str, request: pytest.FixtureRequest
 ) -> None:

@@ -17,7 +17,7 @@ from archgen.views.report.printed_figures import print_inlines, print_text
 from archgen.views.report.printed_report import make_printed_report, walk_sections
 from archgen.views.shapes import Outline, Paragraph, Section, Table, Text
 from tests.judged_projects import judge_ramcip
-from tests.property_sizes import mark_further_samples
+from tests.property_sizes import try_some
 from tests.views.report.report_texts import list_block_texts, list_texts
 
 LIST = yaml.safe_load((Path(__file__).parent / "said_elsewhere.yaml").read_text(encoding="utf-8"))
@@ -54,7 +54,7 @@ def _list_all(outline: Outline) -> list[str]:
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("ros_place", mark_further_samples(["annex", "inline"]))
+@pytest.mark.parametrize("ros_place", try_some(["annex", "inline"]))
 def test_nothing_is_lost_with_everything(views: ProjectViews, ros_place: str) -> None:
     edition = replace(views.edition, ros_place=ros_place)  # type: ignore[arg-type]
     before = report_outline.make_report(views.lookup, edition)

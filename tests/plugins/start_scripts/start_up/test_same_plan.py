@@ -21,7 +21,7 @@ from tests.plugins.start_scripts.start_up.started_workspaces import (
     check_by_systemd,
     make_workspace,
 )
-from tests.property_sizes import mark_further_samples
+from tests.property_sizes import try_some
 from tests.running import RAMCIP, ROOT
 
 PROJECTS = {
@@ -223,7 +223,7 @@ def test_compose_files_are_what_the_specification_says(generated: Generated) -> 
         assert [str(error) for error in validator.iter_errors(yaml.safe_load(text))] == []
 
 
-@pytest.mark.parametrize("generated", mark_further_samples(["vehicle", "courier", "ramcip"]), indirect=True)
+@pytest.mark.parametrize("generated", try_some(["vehicle", "courier", "ramcip"]), indirect=True)
 def test_shellcheck_finds_nothing(generated: Generated) -> None:
     # With what they read; one computer's script is like the other.
     host_scripts = [generated.workspace / "start" / "hosts" / f"{generated.hosts[0]}.sh"]
