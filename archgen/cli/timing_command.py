@@ -52,7 +52,7 @@ ANY_PROPOSAL = "any"
     is_flag=False,
     flag_value=ANY_PROPOSAL,
     type=click.Choice([ANY_PROPOSAL, "settings"]),
-    help="Look for processes, priorities and triggers with which the chains that are late meet their deadlines, and show all "
+    help="Look for processes, priorities, cores and triggers with which the chains that are late meet their deadlines, and show all "
     "that was tried, and a patch. `--propose settings` leaves triggers, and with them all programs, as they are.",
 )
 @click.option("--apply", "applies", is_flag=True, help="With --propose: write the patch into the files.")

@@ -206,6 +206,10 @@ class ResponseTerms:
         if self._waits(name, step):
             yield from self._list_waiting(name, step, any_order=True)
             return
+        queue = self._steps.queues.get(step or "")
+        in_rounds = queue.bound_storing(self.state.system, name) if queue is not None else None
+        if in_rounds is not None:
+            yield replace(explain_queue_bound(in_rounds, self.formulas), is_queue=False, is_hold=True)
         terms: CoreTerms | SharedCoreTerms | FairTerms | None = None
         if step is not None and tier == "fair":
             terms = self._open_fair(step)

@@ -210,6 +210,9 @@ def test_how_long_messages_wait_to_be_stored_follows_from_the_work_that_is_liste
     ("text", "is_fair"),
     [(random_text(seed), False) for seed in range(10)]
     + [(random_style_text(seed), False) for seed in range(14)]
+    + [(random_threads_text(24), False)]  # where what is only read waits for rounds of its executor
+    # Of cores, and of a thread and its GPU taken as one, that were given up, nothing is left of the last sweep.
+    + [(random_robot_text(seed), False) for seed in (16, 17)]
     # Threads that wait for GPUs: by priority, fairly served, and with their cores and GPUs taken as one.
     + [(random_robot_text(seed), is_fair) for seed in (5, 8, 14, 20) for is_fair in (False, True)],
 )

@@ -125,4 +125,4 @@ def test_a_search_in_which_nothing_else_runs_ends_too() -> None:
     """Where jitter grew without end, each activation is looked at, and none needs a second look."""
     streams = (EventStream(60_000, 180_858_867_990, 5_610, 1, 1), EventStream(60_000, 361_717_702_050, 9_540, 1, 1))
     with pytest.raises(DivergedError):
-        find_worst_activation(ActivityWork(14_700, streams), NO_DEMAND, SearchBudget(100_000)).response
+        find_worst_activation(ActivityWork(14_700, streams), NO_DEMAND, SearchBudget(100_000))

@@ -109,7 +109,7 @@ def test_a_step_costs_its_terms_and_an_activation_eight() -> None:
             assert find_worst_activation(work, interference, budget).response == 3
         else:
             with pytest.raises(DivergedError):
-                find_worst_activation(work, interference, budget).response
+                find_worst_activation(work, interference, budget)
 
 
 def test_the_busy_period_is_the_first_moment_without_work() -> None:
