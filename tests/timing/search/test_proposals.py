@@ -223,7 +223,7 @@ def test_tries_are_counted_and_the_same_each_time(monkeypatch: pytest.MonkeyPatc
     assert len(propose_for(asked, 3).tried) == 4
     assert propose_for(asked) == propose_for(asked)
     monkeypatch.setattr(proposals, "_KEPT_TRIES", 1_000)
-    assert propose_for(draw_late_system(3 * 22) or asked).is_cut
+    assert propose_for(draw_late_system(7) or asked).is_cut
 
 
 def test_a_chain_without_figures_is_not_judged() -> None:
