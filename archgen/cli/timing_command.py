@@ -24,7 +24,9 @@ ANY_PROPOSAL = "any"
 @click.option("--all", "shows_all", is_flag=True, help="Show services, elements and loops on a terminal, too.")
 @click.option("--chain", metavar="ID", help="Show a chain term by term.")
 @click.option(
-    "--why", metavar="ID", help="Show the reasoning behind the figures of an element, topic, chain, host, link."
+    "--why",
+    metavar="ID",
+    help="Show the reasoning behind the figures of an element, topic, chain, host, link, resource.",
 )
 @click.option("--from", "source", metavar="ID", help="With --to: the worst and the best ways between two elements.")
 @click.option("--to", "target", metavar="ID", help="See --from.")

@@ -237,6 +237,18 @@ def test_each_response_that_has_a_bound_has_terms_that_give_it(text: str, *, is_
 
 
 @pytest.mark.parametrize("seed", [5, 8, 14, 20])
+def test_loads_of_resources_are_what_their_users_add(seed: int) -> None:
+    results = Results(analyse_architecture(architecture(random_robot_text(seed))), {})
+    used = {name: load for name, load in results.analysis.resources.items() if load.shares}
+    for name, load in used.items():
+        equations = [each for line in print_reasons(results, name) for each in read_equations(line)]
+        assert len(equations) == len(load.shares)
+        assert all(each.holds for each in equations)
+        assert any("from asking until done" in line for line in print_reasons(results, name))
+    assert used
+
+
+@pytest.mark.parametrize("seed", [5, 8, 14, 20])
 @pytest.mark.parametrize("is_fair", [False, True])
 def test_responses_of_threads_that_wait_follow_from_the_work_and_the_waits_that_are_listed(
     seed: int, *, is_fair: bool
