@@ -59,7 +59,7 @@ REFINEMENTS = (
     Refinement(
         "the same where activities fire one another",
         "load.core_responses:CoreSolver._response_by_activation",
-        "if not self._all_at_level(ways, name):",
+        "if not all(step in level_ids for way in ways for step in way.steps):",
         "if True:",
     ),
     Refinement(
@@ -211,13 +211,13 @@ REFINEMENTS = (
     ),
     Refinement(
         "waits for resources use by use",
-        "load.waiting_threads:_bound_unit",
+        "load.waiting_threads:list_waiting_windows",
         "for waits in (_waits_by_use(state, own_ids, budget), _waits_together(state, own_ids))",
         "for waits in (_waits_together(state, own_ids),)",
     ),
     Refinement(
         "waits for resources all at once",
-        "load.waiting_threads:_bound_unit",
+        "load.waiting_threads:list_waiting_windows",
         "for waits in (_waits_by_use(state, own_ids, budget), _waits_together(state, own_ids))",
         "for waits in (_waits_by_use(state, own_ids, budget),)",
     ),

@@ -24,7 +24,9 @@ ANY_PROPOSAL = "any"
 @click.option("--all", "shows_all", is_flag=True, help="Show services, elements and loops on a terminal, too.")
 @click.option("--chain", metavar="ID", help="Show a chain term by term.")
 @click.option(
-    "--why", metavar="ID", help="Show the reasoning behind the figures of an element, topic, chain, host, link."
+    "--why",
+    metavar="ID",
+    help="Show the reasoning behind the figures of an element, topic, chain, host, link, resource.",
 )
 @click.option("--from", "source", metavar="ID", help="With --to: the worst and the best ways between two elements.")
 @click.option("--to", "target", metavar="ID", help="See --from.")
@@ -52,7 +54,7 @@ ANY_PROPOSAL = "any"
     is_flag=False,
     flag_value=ANY_PROPOSAL,
     type=click.Choice([ANY_PROPOSAL, "settings"]),
-    help="Look for processes, priorities and triggers with which the chains that are late meet their deadlines, and show all "
+    help="Look for processes, priorities, cores and triggers with which the chains that are late meet their deadlines, and show all "
     "that was tried, and a patch. `--propose settings` leaves triggers, and with them all programs, as they are.",
 )
 @click.option("--apply", "applies", is_flag=True, help="With --propose: write the patch into the files.")

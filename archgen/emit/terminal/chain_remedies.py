@@ -135,6 +135,8 @@ def _list_demands(configuration: TriedConfiguration) -> Iterator[str]:
             "Priorities are those of processes under SCHED_FIFO: launch files, scripts, units and compose files of "
             "`archgen generate` start each with its own, which needs CAP_SYS_NICE, or `rtprio 99` in /etc/security/limits.d."
         )
+    if "core" in kinds:
+        yield "Launch files, scripts, units and compose files of `archgen generate` hold each process to its core (`taskset`)."
     if "container" in kinds:
         yield "What leaves a container is started as a process of its own, and no message passes inside of one any more."
     if "trigger" in kinds:

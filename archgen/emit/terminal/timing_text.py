@@ -241,7 +241,9 @@ def _assumption_rows(analysis: Analysis) -> Iterator[TextRow]:
     if joint_count:
         subject = "node of several components" if joint_count == 1 else "nodes of several components"
         yield (f"{joint_count} {subject}: one thread{' each' if joint_count > 1 else ''}",)
-    said = {note for response in analysis.responses.values() for note in response.worst.assumptions}
+    values = [each.worst for each in analysis.responses.values()]
+    values += [each.worst for each in (*analysis.runs.values(), *analysis.host_runs.values())]
+    said = {note for value in (*values, *analysis.storing_waits.values()) for note in value.assumptions}
     fair_notes = [share.assumption for share in analysis.system.fair_shares.values()]
     yield from ((note,) for note in (*fair_notes, *list_turn_notes(analysis.system).values()) if note in said)
 

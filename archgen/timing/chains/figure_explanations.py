@@ -152,6 +152,21 @@ def _count_cores(load: HostLoad) -> str:
     return f"{load.cores} core{'s' if load.cores != 1 else ''}"
 
 
+def explain_resource(analysis: Analysis, name: str) -> Iterator[ReasonLine]:
+    """Explain a resource's load: what each activity that uses it adds, and how long it takes from asking until done."""
+    load = analysis.resources[name]
+    yield ReasonLine(0, f"{name}: load {_format_figure(load.utilisation, 'share')}: {load.verdict}")
+    for activity, part in load.shares:
+        use_time = analysis.system.activities[activity].uses[name].worst * analysis.system.tick
+        product = multiply_rate(
+            analysis.paces[activity].rate, figure_wording.format_duration(use_time), _format_figure(part, "share")
+        )
+        wait = _format_figure(load.waits[activity])
+        yield ReasonLine(
+            1, f"{activity} adds {product}; from asking until done {wait}", _span_of_activity(analysis, activity)
+        )
+
+
 def explain_link(analysis: Analysis, name: str) -> Iterator[ReasonLine]:
     """Explain a link's traffic: what each topic adds."""
     load = analysis.links[name]
@@ -307,12 +322,13 @@ def _format_figure(value: TimingValue, kind: str = "duration") -> str:
 
 
 def explain_word(analysis: Analysis, chains: Mapping[str, ChainResult], word: str) -> tuple[ReasonLine, ...]:
-    """Explain what a complete id names: a chain, host, link, topic or activity; nothing for any other word."""
+    """Explain what a complete id names: a chain, host, link, resource, topic or activity; nothing for any other word."""
     if word in chains:
         return tuple(explain_chain(chains[word], analysis))
     for kind, explain_element in (
         (analysis.hosts, explain_host),
         (analysis.links, explain_link),
+        (analysis.resources, explain_resource),
         (analysis.topics, explain_topic),
     ):
         if word in kind:

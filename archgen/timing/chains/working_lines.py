@@ -53,6 +53,7 @@ class WorkingLines:
             has_counts = any(term.events.formula != str(term.events.number) for term in working.terms)
             counts_text = "; of each ceil((t + how much later it may come) / how often)" if has_counts else ""
             core_text = f", on core {working.core} alone" if working.core is not None else ""
+            core_text += ", cores and what their threads use taken as one," if working.is_joined else ""
             head = (
                 "the longest t in which there may be work all the time, until an activation that comes too soon,"
                 if working.is_hold

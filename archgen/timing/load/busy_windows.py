@@ -1,6 +1,6 @@
 """Busy windows: how long work can hold a processor, and threads all of several cores, in integer ticks.
 
-`longest_busy_period` holds for any work-conserving scheduler. `worst_response` is response-time analysis over all
+`longest_busy_period` holds for any work-conserving scheduler. `find_worst_activation` is response-time analysis over all
 activations of a busy period (Lehoczky 1990, with jitter as in Tindell, Burns and Wellings 1994), counted from the
 activation itself (the jitter before it belongs to the event model).
 
@@ -223,11 +223,6 @@ class WorstActivation(NamedTuple):
     def response(self) -> int:
         """Return how long it takes."""
         return self.finish - self.arrival
-
-
-def worst_response(work: ActivityWork, interference: DemandFunction, budget: SearchBudget, busy_period: int = 0) -> int:
-    """Return the worst response over all activations of the busy period."""
-    return find_worst_activation(work, interference, budget, busy_period).response
 
 
 def find_worst_activation(

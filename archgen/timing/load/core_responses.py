@@ -7,7 +7,7 @@ the least urgent of them. So the busy period of that level bounds them all toget
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Sequence
 from fractions import Fraction
 
 from archgen.frozen import NamedTuple
@@ -280,8 +280,9 @@ class CoreSolver:
         ways = self.core.ways_to[name]
         if any(way.entry.kind == "activity" and not self._enters(str(way.entry.key)) for way in ways):
             return busy_period  # behind a gate: how its events follow one another is not known here
-        if not self._all_at_level(ways, name):
-            return busy_period
+        level_ids = self.bounds[self.core.thread_of[name].lowest_priority].demand.level.activations
+        if not all(step in level_ids for way in ways for step in way.steps):
+            return busy_period  # only where all of them may run at its level, all its activations count from them
         streams = tuple(
             stream
             for way in ways
@@ -297,14 +298,6 @@ class CoreSolver:
 
     def _enters(self, name: str) -> bool:
         return name in self.core.inner_triggers.entry_ids
-
-    def _all_at_level(self, ways: Sequence[EntryWay], name: str) -> bool:
-        """Whether all steps that lead to an activity may run at its level: then all its activations count from them."""
-        return all(step in self.bounds_ids(name) for way in ways for step in way.steps)
-
-    def bounds_ids(self, name: str) -> Mapping[str, object]:
-        """Return the activities that count at the level of one."""
-        return self.bounds[self.core.thread_of[name].lowest_priority].demand.level.activations
 
     def _find_worst_activation(self, name: str, streams: EventStreams, bound: LevelBound) -> WorstActivation | None:
         """Return what takes longest from an event to the end of the activation that it makes of `name`."""

@@ -13,11 +13,12 @@ from types import MappingProxyType
 from archgen.frozen import dataclass
 from archgen.timing.load.busy_windows import find_blocked_time
 from archgen.timing.load.core_responses import CoreSolver, LevelBound, LevelWindow, name_way
-from archgen.timing.load.event_streams import EventStreams
+from archgen.timing.load.event_streams import EventStreams, max_arrivals
 from archgen.timing.load.fair_shares import FairBound, FairSolver
 from archgen.timing.load.level_cascades import EntryWay, EventOrigin
 from archgen.timing.load.queue_orders import QueueBound, QueueShare
 from archgen.timing.load.thread_work import CoreWindow, ThreadWork
+from archgen.timing.load.waiting_threads import WaitingWindow
 from archgen.timing.load.work_terms import (
     ONCE,
     CountFormulas,
@@ -33,6 +34,7 @@ from archgen.timing.load.work_terms import (
     multiply_count,
     shorten_working,
 )
+from archgen.timing.system.timing_system import TimingSystem
 
 OWN_JOBS = "its own jobs before the one that comes too soon"
 
@@ -76,6 +78,47 @@ def _count_threads(formulas: CountFormulas, threads: Iterable[ThreadWork], windo
         for name, work in zip(thread.unit, thread.works, strict=True):
             if work.streams and work.cost:
                 yield WorkTerm(((name, work.cost),), formulas.count_events(work.streams, window))
+
+
+def explain_waiting_window(window: WaitingWindow, system: TimingSystem, formulas: CountFormulas) -> FigureWorking:
+    """Return how a window comes about in which a thread keeps waiting for resources: its work and waits, and the others'."""
+    (own_ids, works, rivals_of), interference, (count, arrival, finish) = window
+    looked_at = finish + int(any(not work.cost for work in works))
+    terms: list[WorkTerm] = []
+    for name, work in zip(own_ids, works, strict=True):
+        activity = system.activities[name]
+        cost, waits = activity.wcet or 0, "/".join([*activity.uses, *(["waiting"] if activity.wait else [])])
+        events = EventCount(count, str(count)) if count else formulas.count_events(work.streams, looked_at)
+        reason = f"{waits} {'alone' if rivals_of else 'with all of others that may come first'}" if waits else ""
+        terms.append(WorkTerm(((name, cost), (waits, work.cost - cost)), events if work.streams else ONCE, reason))
+    for resource_id, rivals in rivals_of.items():
+        for each in rivals.competitors:
+            events = formulas.count_events(each.streams, looked_at + each.response)
+            terms.append(WorkTerm(((each.name, each.worst),), events, f"at {resource_id}, pending ones included"))
+    if interference.list_served:
+        reason = "served before it: no more than its own work and a lead for each wait, nor than it has to do"
+        terms += [WorkTerm(((name, served),), ONCE, reason) for name, served in interference.list_served(looked_at)]
+    terms += _count_threads(formulas, interference.mates, looked_at)
+    beside = group_terms(_count_threads(formulas, interference.threads, looked_at))
+    core_count = interference.core_count
+    if core_count == 1:
+        return FigureWorking(finish - arrival, finish, group_terms([*terms, *beside]), count, arrival)
+    works_beside = [(each.unit, _count_work(each, looked_at)) for each in interference.threads]
+    return FigureWorking(
+        finish - arrival,
+        finish,
+        group_terms(terms),
+        count,
+        arrival,
+        core_count=core_count,
+        blocked_time=-(-sum(work for _, work in works_beside) // core_count),
+        beside_terms=beside,
+        shares=tuple(ThreadShare(unit, work, work) for unit, work in works_beside if work),
+    )
+
+
+def _count_work(thread: ThreadWork, window: int) -> int:
+    return sum(work.cost * max_arrivals(work.streams, window) for work in thread.works)
 
 
 def explain_queue_bound(bound: QueueBound, formulas: CountFormulas) -> FigureWorking:

@@ -311,7 +311,8 @@ def leaving_model(state: PropagationState, arc: Arc) -> EventStreams | UnknownCa
         known_ways = state.transaction_ways.get(arc.source, ())
         return _stream_ways(state, source, known_ways, calls) if known_ways else DIVERGED_CAUSE
     if response.value is None:
-        return _downstream_cause(response.cause)
+        notes = (_DOWNSTREAM_WORDS.get(note, note) for note in response.cause.notes)
+        return UnknownCause(response.cause.missing, tuple(notes))
     # What a declared response says goes for its output, whatever may be computed.
     ways = state.ways_to.get(arc.source, ()) if source.response is None else ()
     if (len(ways) == 1 and len(ways[0].steps) == 1) or any(way.delay is None for way in ways):
@@ -399,11 +400,6 @@ def _keep_completions_apart(
     if source.response is not None or is_reentrant(state.system, source):
         return streams
     return keep_events_apart(streams, _best_case(source, calls))
-
-
-def _downstream_cause(cause: UnknownCause) -> UnknownCause:
-    """Return the cause as those see it who read the output."""
-    return UnknownCause(cause.missing, tuple(_DOWNSTREAM_WORDS.get(note, note) for note in cause.notes))
 
 
 def _merge_models(models: Iterable[EventStreams | UnknownCause]) -> EventStreams | UnknownCause:

@@ -240,9 +240,11 @@ class _Propagation(StepUpdates):
         for name in self._activity_ids(steps):
             state.responses[name] = state.responses[name]._replace(value=None, cause=DIVERGED_CAUSE)
             state.diverged.add(name)
+            state.storing_waits.pop(name, None)
             if name in state.ways_to:
                 state.ways_to[name] = tuple(way._replace(delay=None) for way in state.ways_to[name])
         for step in steps:
+            self.joined_bounds.pop(step, None)
             for name in self.host_limits.pop(step, ()):
                 state.host_ways_to.pop(name, None)
             if step in state.system.activities and not has_own_rate(state.system.activities[step]):

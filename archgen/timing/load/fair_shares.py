@@ -17,7 +17,7 @@ it: a lead more for each job. Threads with a priority (real-time ones) run befor
 from __future__ import annotations
 
 from bisect import bisect_right
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from fractions import Fraction
 from itertools import accumulate
@@ -258,19 +258,18 @@ class FairSolver:
         own = GrowingLoad(work_and_lead).demand_function()
         share = sum_fractions(work_utilisation(each.cost, each.streams) for each in work_and_lead)
 
-        def serve_within(window: int) -> int:
+        names = ["/".join(name for unit in group.units for name in unit) for group, _ in others.groups]
+
+        def list_served(window: int) -> Iterator[tuple[str, int]]:
             cut = own.within(window) + lead
-            return sum(
-                [
-                    group.cut_work(sum([each.count_work(window) for each in lanes]), cut)
-                    for group, lanes in others.groups
-                ]
-            )
+            for (group, lanes), name in zip(others.groups, names, strict=True):
+                yield name, group.cut_work(sum([each.count_work(window) for each in lanes]), cut)
 
         served_shares = [
             group.cut_work(sum_fractions(each.known_share for each in lanes), share) for group, lanes in others.groups
         ]
-        return Interference(DemandFunction(serve_within, others.term_count), sum_fractions(served_shares))
+        demand = DemandFunction(lambda window: sum([served for _, served in list_served(window)]), others.term_count)
+        return Interference(demand, sum_fractions(served_shares), list_served=list_served)
 
     def _find_window(self, thread: FairThread, own_works: Sequence[ActivityWork], others: _OtherWork) -> int:
         """Return the least window in which all that comes for a thread is done."""

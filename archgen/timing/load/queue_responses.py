@@ -17,12 +17,12 @@ from archgen.timing.load.load_system import order_of_core
 from archgen.timing.load.queue_orders import (
     QueueBound,
     QueuedTask,
+    QueueShare,
     bound_edf,
     bound_fifo,
     bound_non_preemptive,
     bound_rounds,
     share_rounds,
-    work_of_round,
 )
 from archgen.timing.load.thread_work import WorstResponse
 from archgen.timing.system.core_placement import ProcessingResource
@@ -107,19 +107,28 @@ class CoreQueue:
         )
 
     def limit_storing_wait(self, system: TimingSystem, name: str, wait: WorstResponse) -> WorstResponse:
+        """Return how long a message that an activity only stores may wait, or what it is in rounds, whichever is less."""
+        bound = self.bound_storing(system, name)
+        if bound is None:
+            return wait
+        return WorstResponse(bound.finish if wait.value is None else min(wait.value, bound.finish), wait.tier)
+
+    def bound_storing(self, system: TimingSystem, name: str) -> QueueBound | None:
         """Return how long a message that an activity only stores may wait in rounds, until a job begins that does not read it.
 
         Something as new is stored after a round for each message that its queue keeps, and the one under way; that job
-        takes its time before.
+        takes its time before. None where it keeps any number.
         """
         activity = system.activities[name]
         arcs = [arc for arc in system.arcs_into.get(name, ()) if is_sampled(activity, arc)]
         depths = [1 if self.brings_one_a_round(arc, arcs) else arc.depth for arc in arcs]
         known_depths = [depth for depth in depths if depth is not None]
-        if len(known_depths) < len(depths):
-            return wait
-        in_rounds = (max(known_depths, default=0) + 1) * work_of_round(self.tasks) - (activity.wcet or 0)
-        return WorstResponse(in_rounds if wait.value is None else min(wait.value, in_rounds), wait.tier)
+        if not self.works_in_rounds or len(known_depths) < len(depths):
+            return None
+        rounds = max(known_depths, default=0) + 1
+        counts = [(each, rounds * each.entities - (each.name == name)) for each in self.tasks]
+        shares = tuple(QueueShare(each, each.cost, count, "in the rounds until then") for each, count in counts)
+        return QueueBound(sum(each.work * each.number for each in shares), 0, shares)
 
     def _bound_response(
         self, task: QueuedTask, tasks: Sequence[QueuedTask], busy_period: int, budget: SearchBudget

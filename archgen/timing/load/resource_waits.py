@@ -32,6 +32,7 @@ from archgen.timing.system.timing_system import Activity, TimingSystem
 class Competitor(NamedTuple):
     """Another activity that uses a resource: how long, how often, and how long before it may have been activated."""
 
+    name: str
     worst: int
     streams: EventStreams
     response: int
@@ -193,7 +194,9 @@ class Rivals(NamedTuple):
 
     def work_within(self, window: int) -> int:
         """Return for how long they may use it in a window: of what came in it, or up to their response before."""
-        return sum([worst * max_arrivals(streams, window + response) for worst, streams, response in self.competitors])
+        return sum(
+            [worst * max_arrivals(streams, window + response) for _, worst, streams, response in self.competitors]
+        )
 
 
 def find_rivals(state: PropagationState, own_ids: Sequence[str], resource_id: str) -> Rivals | UnknownCause:
@@ -220,7 +223,7 @@ def find_rivals(state: PropagationState, own_ids: Sequence[str], resource_id: st
             return model
         if response is None or response.value is None:
             return DIVERGED_CAUSE if response is None or not response.cause.missing else response.cause
-        competitors.append(Competitor(worst, model, response.value))
+        competitors.append(Competitor(user, worst, model, response.value))
     return Rivals(tuple(competitors), blocking)
 
 

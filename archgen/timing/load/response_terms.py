@@ -8,13 +8,14 @@ from itertools import chain
 from archgen.frozen import replace
 from archgen.timing.figures.timing_values import ResponseTier, UnknownCause
 from archgen.timing.load.busy_windows import DivergedError, GroupBudgets, SearchBudget, WorstActivation
-from archgen.timing.load.core_responses import CoreResponses, CoreSolver
+from archgen.timing.load.core_responses import CoreResponses, CoreSolver, open_core_solver
 from archgen.timing.load.core_terms import (
     CoreTerms,
     FairTerms,
     explain_core_hold,
     explain_core_window,
     explain_queue_bound,
+    explain_waiting_window,
 )
 from archgen.timing.load.level_cascades import EntryWay
 from archgen.timing.load.load_system import list_written_priorities
@@ -25,6 +26,7 @@ from archgen.timing.load.shared_core_terms import SharedCoreTerms
 from archgen.timing.load.step_updates import StepUpdates
 from archgen.timing.load.thread_work import CoreWindow, EventModels, WorstResponse, build_core_threads, find_work
 from archgen.timing.load.transaction_windows import ENDLESS, TransactionWindows, explain_way_window
+from archgen.timing.load.waiting_threads import WaitingWindow, find_served_window, list_waiting_windows
 from archgen.timing.load.whole_hosts import list_host_limits
 from archgen.timing.load.work_terms import (
     CountFormulas,
@@ -60,11 +62,14 @@ class ResponseTerms:
         response = self.state.responses[name]
         if response.value is None or response.tier in {"declared", "unknown"}:
             return None
-        return choose_working(_until_diverged(self._list_responses(name, response.tier)), response.value)
+        workings = chain(_until_diverged(self._list_responses(name, response.tier)), self._list_joined(name))
+        return choose_working(workings, response.value)
 
     def _list_responses(self, name: str, tier: ResponseTier) -> Iterator[FigureWorking]:
         step = self._find_step(name)
-        if step is None:
+        if self._waits(name, step):
+            yield from self._list_waiting(name, step)
+        elif step is None:
             yield from self._list_lone(name)
         elif tier == "whole host":
             terms = self._solve_host(step)
@@ -129,6 +134,38 @@ class ResponseTerms:
         term = WorkTerm(((name, work.cost),), events, "its own")
         yield FigureWorking(finish - arrival, finish, group_terms([term]), count, arrival)
 
+    def _waits(self, name: str, step: str | None) -> bool:
+        return self.state.system.activities[name].suspends if step is None else self._steps.resources[step].waits
+
+    def _list_waiting(self, name: str, step: str | None, *, any_order: bool = False) -> Iterator[FigureWorking]:
+        """Yield how a bound of a thread that waits for resources was found."""
+        own_core = ProcessingResource(name, None, 1, ((name,),), waits=True)
+        resource = own_core if step is None else self._steps.resources[step]
+        asked = self.state, resource, self._steps.waiting_ids
+        windows = list_waiting_windows(*asked, SearchBudget(), any_order=any_order)
+        if step in self._steps.fair_cores and not any_order:
+            solver = self._open_fair(step).solver
+            windows.append(find_served_window(self.state, resource, None, solver.serve_others, SearchBudget()))
+        for window in windows:
+            if isinstance(window, WaitingWindow):
+                yield explain_waiting_window(window, self.state.system, self.formulas)
+
+    def _list_joined(self, name: str) -> Iterator[FigureWorking]:
+        """Yield how cores and the resources that their threads use, taken as one processor, bound an activity."""
+        for step in self._steps.joined_steps_of.get(name, ()):
+            joined, windows = self._steps.joined_resources[step], dict[str, CoreWindow]()
+            workings: Iterable[FigureWorking] = ()
+            if joined.core is not None:
+                solver = open_core_solver(joined.core, self._steps.find_model, SearchBudget())
+                ways = solver.solve().ways_to.get(name, ())
+                workings = CoreTerms(solver, self.formulas).list_responses(name, ways)
+            else:
+                effort = AnalysisEffort(SearchBudget(), None, windows)
+                find_responses(joined.system, joined.processor, self.state.event_models, effort)
+                if name in windows:
+                    workings = (explain_core_window(windows[name], name, self.formulas),)
+            yield from (replace(working, is_joined=True) for working in workings)
+
     def _list_plain(self, name: str, step: str, tier: ResponseTier) -> Iterator[FigureWorking]:
         """Yield how a response was found on a core on which nothing fires anything else."""
         models, windows = self._steps.models_of(step), dict[str, CoreWindow]()
@@ -160,13 +197,19 @@ class ResponseTerms:
         wait = self.state.storing_waits.get(name)
         if wait is None or not wait.value:
             return None
-        return choose_working(_until_diverged(self._list_holds(name, wait.value, wait.tier)), wait.value)
+        holds = _until_diverged(self._list_holds(name, wait.value, wait.tier))
+        return choose_working(chain(holds, self._list_joined(name)), wait.value)
 
     def _list_holds(self, name: str, hold: int, tier: ResponseTier) -> Iterator[FigureWorking]:
         step = self._find_step(name)
         resource = ProcessingResource(name, None, 1, ((name,),)) if step is None else self._steps.resources[step]
-        if resource.waits or self.state.system.activities[name].suspends:
+        if self._waits(name, step):
+            yield from self._list_waiting(name, step, any_order=True)
             return
+        queue = self._steps.queues.get(step or "")
+        in_rounds = queue.bound_storing(self.state.system, name) if queue is not None else None
+        if in_rounds is not None:
+            yield replace(explain_queue_bound(in_rounds, self.formulas), is_queue=False, is_hold=True)
         terms: CoreTerms | SharedCoreTerms | FairTerms | None = None
         if step is not None and tier == "fair":
             terms = self._open_fair(step)

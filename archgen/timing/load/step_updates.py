@@ -83,16 +83,16 @@ class StepUpdates(PropagationSteps):
 
     def _update_joined_resources(self, step: str) -> bool:
         """Find the bounds of joined resources, and return whether they changed."""
-
-        def find_model(origin: EventOrigin, entry_arc: FiringArc | None) -> EventStreams | UnknownCause:
-            if entry_arc is None:
-                return self.state.event_models[str(origin.key)]
-            return arriving_model(self.state, entry_arc.arc)
-
-        bounds = self.joined_resources[step].find_bounds(find_model, self.state.event_models, self.budget_of[step])
+        bounds = self.joined_resources[step].find_bounds(self.find_model, self.state.event_models, self.budget_of[step])
         changed = bounds != self.joined_bounds.get(step)
         self.joined_bounds[step] = bounds
         return changed
+
+    def find_model(self, origin: EventOrigin, entry_arc: FiringArc | None) -> EventStreams | UnknownCause:
+        """Return the event model of what enters joined resources."""
+        if entry_arc is None:
+            return self.state.event_models[str(origin.key)]
+        return arriving_model(self.state, entry_arc.arc)
 
     def _limit_response(self, name: str, response: WorstResponse) -> WorstResponse:
         """Return a response, or the bound of all resources that are joined with its core, whichever is less."""

@@ -15,6 +15,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
 from fractions import Fraction
+from types import MappingProxyType
 
 from archgen.frozen import NamedTuple
 from archgen.timing.figures.timing_values import ResponseTier, UnknownCause, sum_fractions, unite_causes
@@ -24,9 +25,10 @@ from archgen.timing.load.busy_windows import (
     DivergedError,
     GrowingLoad,
     SearchBudget,
+    WorstActivation,
+    find_worst_activation,
     longest_busy_period,
     longest_wait_for_turn,
-    worst_response,
 )
 from archgen.timing.load.event_streams import EventStreams, delay_streams
 from archgen.timing.load.inner_core import urgency_of
@@ -88,19 +90,30 @@ def _limit_to_served(
     budget: SearchBudget,
 ) -> WorstResponse:
     """Return a response, or what it is with what others are served before the thread and a lead more for each wait."""
+    window = find_served_window(state, resource, response.value, serve_others, budget)
+    if isinstance(window, UnknownCause) or (response.value is not None and response.value <= window.worst.response):
+        return response
+    return WorstResponse(window.worst.response, "fair")
+
+
+def find_served_window(
+    state: PropagationState,
+    resource: ProcessingResource,
+    known_bound: int | None,
+    serve_others: ServedWork,
+    budget: SearchBudget,
+) -> WaitingWindow | UnknownCause:
+    """Return the window of a thread on cores that are shared fairly, or why none was looked for that is below a bound."""
     own_ids = _list_own(state.system, resource)
     waits = OVERLOAD_CAUSE if _fills_resource(state, own_ids) else _waits_by_use(state, own_ids, budget)
     if isinstance(waits, UnknownCause):
-        return response
-    limit = None if response.value is None else response.value - max(work.cost for work in waits.works)
+        return waits
+    limit = None if known_bound is None else known_bound - max(work.cost for work in waits.works)
     interference = serve_others(limit)
     if interference is None:
-        return response
+        return DIVERGED_CAUSE
     is_in_order = len(own_ids) == 1 and works_in_order(state.system, state.system.activities[own_ids[0]])
-    bound = _bound_with(waits, interference, budget, in_order=is_in_order)
-    if isinstance(bound, UnknownCause) or (response.value is not None and response.value <= bound):
-        return response
-    return WorstResponse(bound, "fair")
+    return _bound_with(waits, interference, budget, in_order=is_in_order)
 
 
 def find_waiting_stores(
@@ -145,61 +158,79 @@ def _bound_unit(
     any_order: bool = False,
 ) -> WorstResponse:
     """Bound the response of all activities of a thread."""
+    windows = list_waiting_windows(state, resource, waiting_ids, budget, any_order=any_order)
+    tier = _name_tier(state.system, resource)
+    bounds = [window.worst.response for window in windows if isinstance(window, WaitingWindow)]
+    if bounds:
+        return WorstResponse(min(bounds), tier)
+    return WorstResponse(None, tier, unite_causes([window for window in windows if isinstance(window, UnknownCause)]))
+
+
+def list_waiting_windows(
+    state: PropagationState,
+    resource: ProcessingResource,
+    waiting_ids: Collection[str],
+    budget: SearchBudget,
+    *,
+    any_order: bool = False,
+) -> list[WaitingWindow | UnknownCause]:
+    """Return the windows that bound all activities of a thread, or why there is none."""
     system = state.system
     own_ids = _list_own(system, resource)
-    tier = _name_tier(system, resource)
     if _fills_resource(state, own_ids) or (len(own_ids) == len(resource.units[0]) and _fills_thread(state, own_ids)):
-        return WorstResponse(None, tier, OVERLOAD_CAUSE)
+        return [OVERLOAD_CAUSE]
     others = list(_list_others(state, resource, own_ids, waiting_ids))
-    causes = [thread.cause for thread in others if thread.cause]
-    if causes:
-        return WorstResponse(None, tier, unite_causes(causes))
+    if causes := [thread.cause for thread in others if thread.cause]:
+        return list(causes)
     mates = _list_mates(system, resource, others)
     beside = [thread for thread in others if thread not in mates] if mates else others
-    interference = _divide_demand(beside, 1 if resource.joined else resource.cores)
-    if mates:  # they hold one another up for all that they compute, on however many cores
-        interference = interference.add(_divide_demand(mates, 1))
+    interference = _divide_demand(beside, 1 if resource.joined else resource.cores, mates)
     is_in_order = not any_order and len(own_ids) == 1 and works_in_order(system, system.activities[own_ids[0]])
     # Use by use, or all uses of others in the whole time at once: either may be the smaller one.
-    candidates = [
+    return [
         _bound_with(waits, interference, budget, in_order=is_in_order)
         for waits in (_waits_by_use(state, own_ids, budget), _waits_together(state, own_ids))
     ]
-    bounds = [bound for bound in candidates if not isinstance(bound, UnknownCause)]
-    if bounds:
-        return WorstResponse(min(bounds), tier)
-    return WorstResponse(None, tier, unite_causes([bound for bound in candidates if isinstance(bound, UnknownCause)]))
 
 
-class _Waits(NamedTuple):
+class ThreadWaits(NamedTuple):
     """The work of a thread with its waits for resources, and what of them is not counted for each activation alone."""
 
+    own_ids: tuple[str, ...]
     works: tuple[ActivityWork, ...]
-    rivals: tuple[Rivals, ...] = ()
+    rivals: Mapping[str, Rivals] = MappingProxyType({})
+    """By resource: who may use it in the whole time."""
 
 
 class Interference(NamedTuple):
-    """How long others can keep all cores busy in a window, and their share of them in the long run."""
+    """How long others can keep all cores busy in a window, and their share of them in the long run.
+
+    That is what `threads` have to do, divided by the cores, and all that `mates` have to do; or what `list_served` yields.
+    """
 
     demand: DemandFunction
     share: Fraction
-
-    def add(self, other: Interference) -> Interference:
-        """Return both together."""
-        first, second = self.demand, other.demand
-        total = DemandFunction(
-            lambda window: first.within(window) + second.within(window), first.term_count + second.term_count
-        )
-        return Interference(total, self.share + other.share)
+    threads: Sequence[ThreadWork] = ()
+    core_count: int = 1
+    mates: Sequence[ThreadWork] = ()
+    list_served: Callable[[int], Iterator[tuple[str, int]]] | None = None
 
 
-def _waits_by_use(state: PropagationState, own_ids: Sequence[str], budget: SearchBudget) -> _Waits | UnknownCause:
+class WaitingWindow(NamedTuple):
+    """The window that bounds a thread that waits: what it does in it itself, what holds it up, and what takes longest."""
+
+    waits: ThreadWaits
+    interference: Interference
+    worst: WorstActivation
+
+
+def _waits_by_use(state: PropagationState, own_ids: Sequence[str], budget: SearchBudget) -> ThreadWaits | UnknownCause:
     """Return the work of a thread with the longest wait for each use."""
     use_times = {name: find_use_times(state, name, budget) for name in own_ids}
     return _add_waits(state, use_times)
 
 
-def _waits_together(state: PropagationState, own_ids: Sequence[str]) -> _Waits | UnknownCause:
+def _waits_together(state: PropagationState, own_ids: Sequence[str]) -> ThreadWaits | UnknownCause:
     """Return the work of a thread with its uses alone, and the rivals: no use of theirs is waited for twice."""
     rivals = {
         resource_id: find_rivals(state, own_ids, resource_id)
@@ -215,10 +246,10 @@ def _waits_together(state: PropagationState, own_ids: Sequence[str]) -> _Waits |
         if (activity := state.system.activities[name])
     }
     waits = _add_waits(state, use_times)
-    return waits if isinstance(waits, UnknownCause) else waits._replace(rivals=tuple(known_rivals.values()))
+    return waits if isinstance(waits, UnknownCause) else waits._replace(rivals=known_rivals)
 
 
-def _add_waits(state: PropagationState, use_times: Mapping[str, int | UnknownCause]) -> _Waits | UnknownCause:
+def _add_waits(state: PropagationState, use_times: Mapping[str, int | UnknownCause]) -> ThreadWaits | UnknownCause:
     """Return the work of a thread, each activation with a time on top, or what is missing of it."""
     works: list[ActivityWork] = []
     causes: list[UnknownCause] = []
@@ -231,50 +262,67 @@ def _add_waits(state: PropagationState, use_times: Mapping[str, int | UnknownCau
                 causes.append(model)
             else:
                 works.append(ActivityWork(work.cost + use_time, () if isinstance(model, UnknownCause) else model))
-    return unite_causes(causes) if causes else _Waits(tuple(works))
+    return unite_causes(causes) if causes else ThreadWaits(tuple(use_times), tuple(works))
 
 
 def _bound_with(
-    waits: _Waits | UnknownCause, interference: Interference, budget: SearchBudget, *, in_order: bool
-) -> int | UnknownCause:
-    """Return the longest response of a thread with some waits, or why none is found."""
+    waits: ThreadWaits | UnknownCause, interference: Interference, budget: SearchBudget, *, in_order: bool
+) -> WaitingWindow | UnknownCause:
+    """Return the window of a thread with some waits, or why none is found."""
     if isinstance(waits, UnknownCause):
         return waits
     shares = [work_utilisation(work.cost, work.streams) for work in waits.works]
-    if sum_fractions([interference.share, *shares, *(rivals.share for rivals in waits.rivals)]) >= 1:
+    if sum_fractions([interference.share, *shares, *(rivals.share for rivals in waits.rivals.values())]) >= 1:
         return DIVERGED_CAUSE
     demand = DemandFunction(
-        lambda window: interference.demand.within(window) + sum([each.work_within(window) for each in waits.rivals]),
-        interference.demand.term_count + sum([2 * len(each.competitors) for each in waits.rivals]),
+        lambda window: (
+            interference.demand.within(window) + sum([each.work_within(window) for each in waits.rivals.values()])
+        ),
+        interference.demand.term_count + sum([2 * len(each.competitors) for each in waits.rivals.values()]),
     )
     try:
-        return _find_longest_response(waits.works, demand, budget, in_order=in_order)
+        return WaitingWindow(
+            waits, interference, _find_longest_response(waits.works, demand, budget, in_order=in_order)
+        )
     except DivergedError:
         return DIVERGED_CAUSE
 
 
 def _find_longest_response(
     works: Sequence[ActivityWork], interference: DemandFunction, budget: SearchBudget, *, in_order: bool
-) -> int:
+) -> WorstActivation:
     """Return the longest response: by activation where one comes after the other, else the whole busy time."""
     if in_order and works[0].streams:
-        return worst_response(works[0], interference, budget)
+        return find_worst_activation(works[0], interference, budget)
     own_demand = GrowingLoad(works).demand_function()
     once_cost = sum(work.cost for work in works if not work.streams)
     total = DemandFunction(
         lambda window: once_cost + own_demand.within(window) + interference.within(window),
         own_demand.term_count + interference.term_count,
     )
-    takes_no_time = any(not work.cost for work in works)
-    return longest_wait_for_turn(total, budget) if takes_no_time else longest_busy_period(total, budget)
+    search = longest_wait_for_turn if any(not work.cost for work in works) else longest_busy_period
+    return WorstActivation(0, 0, search(total, budget))
 
 
-def _divide_demand(others: Sequence[ThreadWork], core_count: int) -> Interference:
-    """Return how long others can be busy on all cores at once in a window."""
-    demand = GrowingLoad([work for thread in others for work in thread.works]).demand_function()
+def _divide_demand(others: Sequence[ThreadWork], core_count: int, mates: Sequence[ThreadWork]) -> Interference:
+    """Return how long others can be busy on all cores at once in a window.
+
+    What computes in turn with the thread holds it up for all that it computes, on however many cores.
+    """
+    demand, in_turn = (
+        GrowingLoad([work for thread in threads for work in thread.works]).demand_function()
+        for threads in (others, mates)
+    )
+    shares = [sum_fractions(thread.share for thread in threads) for threads in (others, mates)]
     return Interference(
-        DemandFunction(lambda window: -(-demand.within(window) // core_count), demand.term_count),
-        sum_fractions(thread.share for thread in others) / core_count,
+        DemandFunction(
+            lambda window: -(-demand.within(window) // core_count) + in_turn.within(window),
+            demand.term_count + in_turn.term_count,
+        ),
+        shares[0] / core_count + shares[1],
+        others,
+        core_count,
+        mates,
     )
 
 

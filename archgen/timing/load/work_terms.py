@@ -177,6 +177,8 @@ class FigureWorking:
     """On cores that are shared fairly: what no other thread is served before it beyond its own work."""
     core: int | None = None
     """The core that alone gives the figure of what may run on several."""
+    is_joined: bool = False
+    """Whether cores and the resources that their threads use are taken as one processor: each works while anything is pending."""
     is_queue: bool = False
     """Whether `window` is the work that comes before the end of an activation in a queue, itself included."""
     is_hold: bool = False

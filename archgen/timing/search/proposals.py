@@ -2,7 +2,8 @@
 
 Bounded by a number of tries, in a fixed order: the same files give the same proposal everywhere.
 
-Whole configurations are tried: which nodes are processes of their own, in which order a host runs them, what fires whom.
+Whole configurations are tried: which nodes are processes of their own, in which order and on which cores a host runs
+them, what fires whom.
 """
 
 from __future__ import annotations
@@ -10,7 +11,7 @@ from __future__ import annotations
 from collections import defaultdict
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from fractions import Fraction
-from itertools import pairwise
+from itertools import pairwise, product
 
 from archgen.diagnostics.common_wording import join_words
 from archgen.frozen import dataclass, replace
@@ -32,6 +33,8 @@ _LOWEST_PRIORITY, _HIGHEST_PRIORITY = 10, 99
 _NAMED_MOVES = 2
 Ranking = tuple[str, ...]
 """Processes of a host, the most urgent first; those that are not in it have no priority."""
+HostCores = tuple[str, tuple[tuple[str, int], ...]]
+"""A host, and its processes, each with the core on which alone it runs."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -67,6 +70,7 @@ class RunConfiguration:
     order: str = ""
     """The order that the rankings come from, a key of ORDERS."""
     rankings: tuple[tuple[str, Ranking], ...] = ()
+    pins: tuple[HostCores, ...] = ()
     moves: tuple[str, ...] = ()
     """What was moved within the order, in words."""
     triggers: tuple[TriggerChoice, ...] = ()
@@ -76,6 +80,10 @@ class RunConfiguration:
         rankings = {**dict(self.rankings), host: ranking}
         kept = tuple((name, each) for name, each in rankings.items() if each)
         return replace(self, rankings=kept, moves=(*self.moves, move) if move else self.moves)
+
+
+NextLister = Callable[[RunConfiguration], Iterable[RunConfiguration]]
+"""Lists what to try after a configuration."""
 
 
 class ConfigurationSpace:
@@ -94,6 +102,10 @@ class ConfigurationSpace:
             for host in architecture.hosts.values()
             if host.id in chain_hosts and host.scheduling in {None, "fixed_priority"} and not host.core_scheduling
         )
+        pinned_hosts = {activity.host for activity in self._activities.values() if activity.cores}
+        cores = {host: analysis.system.cores.get(host) or 1 for host in self.ranked_hosts if host not in pinned_hosts}
+        self.free_cores = {host: count for host, count in cores.items() if count > 1}
+        """How many cores hosts have that have several, of which none is written for anything."""
 
     def _find_separable_nodes(self) -> Iterator[str]:
         """Yield the nodes that can leave their containers: all but those that share data, or one that then is alone."""
@@ -130,6 +142,21 @@ class ConfigurationSpace:
                 names = sorted(processes, key=lambda name: self._make_rank_key(order, processes[name]))
                 ranked = ranked.with_ranking(host, tuple(names))
         return ranked
+
+    def pin(self, configuration: RunConfiguration) -> RunConfiguration:
+        """Return a configuration in which each process has one core: those with most to do first, where least is to do."""
+        pins_by_host: list[HostCores] = []
+        for host, core_count in self.free_cores.items():
+            processes = self.list_processes(host, configuration.own_processes)
+            shares = {name: share.value or Fraction(0) for name, share in self._analysis.hosts[host].activity_shares}
+            loads = {name: sum(shares.get(each.id, 0) for each in members) for name, members in processes.items()}
+            core_loads, pins = [Fraction(0)] * core_count, dict[str, int]()
+            for name in sorted(loads, key=lambda each: -loads[each]):
+                core = pins[name] = core_loads.index(min(core_loads))
+                core_loads[core] += loads[name]
+            if len(pins) > 1:
+                pins_by_host.append((host, tuple(pins.items())))
+        return replace(configuration, pins=tuple(pins_by_host))
 
     def _make_rank_key(self, order: str, members: Sequence[Activity]) -> tuple[bool | Fraction, ...]:
         """Return what a process is sorted by, the most urgent first."""
@@ -171,7 +198,9 @@ class ConfigurationSpace:
                 yield configuration.with_ranking(host, swapped, f"{' before '.join(names)} on {host}")
 
     def list_smaller(self, configuration: RunConfiguration) -> Iterator[RunConfiguration]:
-        """Yield configurations that change less: priorities of fewer processes, fewer processes, or fewer triggers."""
+        """Yield configurations that change less: fewer pins, priorities of fewer processes, fewer processes, or fewer triggers."""
+        for pinned in configuration.pins:
+            yield replace(configuration, pins=tuple(each for each in configuration.pins if each != pinned))
         for host, ranking in configuration.rankings:
             processes = self.list_processes(host, configuration.own_processes)
             needed = [place for place, name in enumerate(ranking) if self._on_chain & {a.id for a in processes[name]}]
@@ -181,7 +210,8 @@ class ConfigurationSpace:
         for container in dict.fromkeys(container_of.values()):
             kept_nodes = tuple(node for node, own_container in container_of.items() if own_container != container)
             processes_left = replace(configuration, own_processes=kept_nodes)
-            yield self.rank(processes_left, configuration.order) if configuration.order else processes_left
+            ranked = self.rank(processes_left, configuration.order) if configuration.order else processes_left
+            yield self.pin(ranked) if configuration.pins else ranked
         for choice in configuration.triggers:
             yield replace(configuration, triggers=tuple(each for each in configuration.triggers if each != choice))
 
@@ -227,6 +257,13 @@ class ConfigurationSpace:
                     TriedChange(node, "timing.priority", str(_LOWEST_PRIORITY + step))
                     for node in dict.fromkeys(activity.node for activity in members)
                 ]
+        for host, pins in configuration.pins:
+            processes = self.list_processes(host, configuration.own_processes)
+            changes += [
+                TriedChange(node, "timing.core", str(core))
+                for process, core in pins
+                for node in dict.fromkeys(activity.node for activity in processes.get(process, ()))
+            ]
         return (*changes, *(change for choice in configuration.triggers for change in choice.list_changes()))
 
     def describe(self, configuration: RunConfiguration) -> str:
@@ -246,6 +283,8 @@ class ConfigurationSpace:
             ]
             tail = ", none below the chains" if any(ranked < count for ranked, count in sizes) else ""
             phrases.append(f"{ORDERS[configuration.order]}{place}{tail}")
+        if configuration.pins:
+            phrases.append(f"each process on one core of {join_words([host for host, _ in configuration.pins])}")
         phrases += moves if len(moves) <= _NAMED_MOVES else [f"{len(moves)} moves in it"]
         return ", ".join([*phrases, *(choice.describe() for choice in configuration.triggers)]) or "as written"
 
@@ -344,8 +383,7 @@ class _ProposalSearch:
         self.keeps_triggers = keep_triggers
         self.hopeless: dict[str, Fraction] = {}
         self.tried: dict[Changes, tuple[TriedConfiguration, RunConfiguration]] = {}
-        self._try(RunConfiguration())
-        self.written = self.best = self.tried[()][0]
+        self.written = self.best = self._try(RunConfiguration())
         self.is_cut = False
 
     def run(self) -> Proposal:
@@ -354,7 +392,7 @@ class _ProposalSearch:
             self.hopeless = self._find_hopeless(())
             try:
                 self._search()
-                self._climb(self.space.list_smaller)
+                self._climb(self.best, self.space.list_smaller)
             except TriesSpentError:
                 self.is_cut = True
         tried = tuple(each for each, _ in self.tried.values())
@@ -367,9 +405,21 @@ class _ProposalSearch:
             triggers = self._choose_triggers()
             if triggers and self._try_orders(triggers):
                 return
-        self._climb(lambda start: self.space.list_moves(start, self.best.late), _KEPT_TRIES)
+        for start in self._list_starts():
+            self._climb(start, lambda each: self.space.list_moves(each, self.best.late), _KEPT_TRIES)
         if not self.keeps_triggers and self.best.late:
             self._add_triggers()
+
+    def _list_starts(self) -> list[TriedConfiguration]:
+        """Return the best configurations with a core for each process and without, the better one first."""
+        starts: dict[bool, TriedConfiguration] = {}
+        for tried, configuration in sorted(self.tried.values(), key=lambda each: each[0].rank):
+            if self._is_harmless(tried):
+                starts.setdefault(bool(configuration.pins), tried)
+        return list(starts.values())
+
+    def _is_harmless(self, tried: TriedConfiguration) -> bool:
+        return set(tried.late) <= set(self.written.late)
 
     def _add_triggers(self) -> None:
         """Try triggers of the late chains: all with each order, and one after the other on top of the best configuration."""
@@ -389,11 +439,11 @@ class _ProposalSearch:
         floors = self.trials.find_floors(changes)
         return {name: floors[name] for name, limit in self.deadlines.items() if floors.get(name, limit) > limit}
 
-    def _try(self, configuration: RunConfiguration) -> bool:
-        """Analyse a configuration; return whether it is the best so far, and makes no other chain late."""
+    def _try(self, configuration: RunConfiguration) -> TriedConfiguration:
+        """Analyse a configuration, or recall how it was; it is the best if it is better, and makes no other chain late."""
         changes = self.space.list_changes(configuration)
         if changes in self.tried:
-            return False
+            return self.tried[changes][0]
         slacks = {name: self.trials.find_slack(name, changes) for name in self.deadlines}
         bounds = {name: None if slack is None else self.deadlines[name] - slack for name, slack in slacks.items()}
         late = {name: slack for name, slack in slacks.items() if slack is None or slack < 0}
@@ -404,16 +454,18 @@ class _ProposalSearch:
         words = self.space.describe(configuration)
         result = TriedConfiguration(words, changes, bounds, tuple(late), sum(lateness, Fraction(0)))
         self.tried[changes] = result, configuration
-        is_best = bool(changes) and late.keys() <= set(self.written.late) and result.rank < self.best.rank
-        self.best = result if is_best else self.best if changes else result
-        return is_best
+        if changes and self._is_harmless(result) and result.rank < self.best.rank:
+            self.best = result
+        return result
 
     def _try_orders(self, triggers: Sequence[TriggerChoice] = ()) -> bool:
-        """Try each order, with the processes as they are and with one for each node: nothing but these first."""
-        for order in ("", *filter(None, ORDERS)):
-            for own_processes in dict.fromkeys(((), self.space.separable_nodes)):
-                base = RunConfiguration(own_processes=own_processes, triggers=tuple(triggers))
-                self._try(self.space.rank(base, order) if order else base)
+        """Try each order, with the processes as they are and with one for each node; then with a core for each process."""
+        own_choices = dict.fromkeys(((), self.space.separable_nodes))
+        for is_pinned in (False, True) if self.space.free_cores else (False,):
+            for order, own_processes in product(("", *filter(None, ORDERS)), own_choices):
+                configuration = RunConfiguration(own_processes=own_processes, triggers=tuple(triggers))
+                configuration = self.space.rank(configuration, order) if order else configuration
+                self._try(self.space.pin(configuration) if is_pinned else configuration)
                 if not self.best.late:
                     return True
         return False
@@ -431,15 +483,16 @@ class _ProposalSearch:
                     return triggers
         return ()
 
-    def _climb(self, list_next: Callable[[RunConfiguration], Iterable[RunConfiguration]], kept_tries: int = 0) -> None:
-        """Go on to the first configuration after the best one that is better, as long as there is one."""
-        is_better = self.best is not self.written or kept_tries > 0
+    def _climb(self, start: TriedConfiguration, list_next: NextLister, kept_tries: int = 0) -> None:
+        """Go on to the first configuration after one that is better, as long as there is one."""
+        is_better = True
         while is_better and (self.best.late or not kept_tries):
             is_better = False
-            for configuration in list_next(self.tried[self.best.changes][1]):
+            for configuration in list_next(self.tried[start.changes][1]):
                 if self.trials.tries_left <= kept_tries:
                     self.is_cut = True
                     return
-                is_better = self._try(configuration)
-                if is_better:
+                tried = self._try(configuration)
+                if self._is_harmless(tried) and tried.rank < start.rank:
+                    start, is_better = tried, True
                     break

@@ -184,7 +184,8 @@ class _RouteFinder:
             common_links = [link for link_id, link in host_links if link_id in target_links]
         if not common_links:
             return _NO_LINK
-        link = min(common_links, key=_latency_order)
+        # Those without a worst latency come last.
+        link = min(common_links, key=lambda each: (each.worst is None, each.worst.value if each.worst else 0))
         return link.id, self._tick_unit.quantity_to_ticks(link.best), self._tick_unit.quantity_to_ticks(link.worst)
 
     def _find_device_links(self, source: _Place, target: _Place) -> list[Link]:
@@ -196,11 +197,6 @@ class _RouteFinder:
 
     def _is_on(self, link_id: str, place: _Place) -> bool:
         return link_id in place.device_links or (place.host or "") in self._links[link_id].connects
-
-
-def _latency_order(link: Link) -> tuple[bool, object]:
-    """Sort key for links: by worst latency, those without one last."""
-    return (link.worst is None, link.worst.value if link.worst else 0)
 
 
 _BITS_PER_BYTE = 8

@@ -134,11 +134,8 @@ class _TriggerSearch:
 
     def _needed_inputs(self, name: str) -> tuple[str, ...]:
         """Return the inputs that all-of really waits for: what is sent once and kept is always there."""
-        return tuple(key for key, arcs in self.inputs[name].items() if not any(self._is_sent_once(arc) for arc in arcs))
-
-    def _is_sent_once(self, arc: Arc) -> bool:
-        """Whether an arc's source publishes only once, at the start."""
-        return self.system.activities[arc.source].behaviour == "once"
+        activities, inputs = self.system.activities, self.inputs[name].items()
+        return tuple(key for key, arcs in inputs if all(activities[arc.source].behaviour != "once" for arc in arcs))
 
     def find_firing(self) -> frozenset[str]:
         """Return all activities that can ever fire; what is unknown is taken to fire."""

@@ -21,6 +21,7 @@ from archgen.timing.run_analysis import analyse_architecture
 from tests.property_sizes import list_seeds, try_some
 from tests.running import RAMCIP
 from tests.timing.hand_reader import read_equations
+from tests.timing.random_robots import random_robot_text
 from tests.timing.random_styles import random_style_text
 from tests.timing.random_systems import architecture, random_text
 from tests.timing.random_threads import random_threads_text
@@ -206,10 +207,17 @@ def test_how_long_messages_wait_to_be_stored_follows_from_the_work_that_is_liste
 
 
 @pytest.mark.parametrize(
-    "text", [random_text(seed) for seed in range(10)] + [random_style_text(seed) for seed in range(14)]
+    ("text", "is_fair"),
+    [(random_text(seed), False) for seed in range(10)]
+    + [(random_style_text(seed), False) for seed in range(14)]
+    + [(random_threads_text(24), False)]  # where what is only read waits for rounds of its executor
+    # Of cores, and of a thread and its GPU taken as one, that were given up, nothing is left of the last sweep.
+    + [(random_robot_text(seed), False) for seed in (16, 17)]
+    # Threads that wait for GPUs: by priority, fairly served, and with their cores and GPUs taken as one.
+    + [(random_robot_text(seed), is_fair) for seed in (5, 8, 14, 20) for is_fair in (False, True)],
 )
-def test_each_response_that_has_a_bound_has_terms_that_give_it(text: str) -> None:
-    analysis = analyse_architecture(architecture(text))
+def test_each_response_that_has_a_bound_has_terms_that_give_it(text: str, *, is_fair: bool) -> None:
+    analysis = analyse_architecture(architecture(text, is_fair=is_fair))
     assert analysis.state is not None
     workings = ResponseTerms(analysis.state)
     for name, response in analysis.state.responses.items():
@@ -226,6 +234,33 @@ def test_each_response_that_has_a_bound_has_terms_that_give_it(text: str) -> Non
         else:
             assert storing_working is not None, name
             assert (storing_working.value, storing_working.is_consistent) == (wait.value, True)
+
+
+@pytest.mark.parametrize("seed", [5, 8, 14, 20])
+def test_loads_of_resources_are_what_their_users_add(seed: int) -> None:
+    results = Results(analyse_architecture(architecture(random_robot_text(seed))), {})
+    used = {name: load for name, load in results.analysis.resources.items() if load.shares}
+    for name, load in used.items():
+        equations = [each for line in print_reasons(results, name) for each in read_equations(line)]
+        assert len(equations) == len(load.shares)
+        assert all(each.holds for each in equations)
+        assert any("from asking until done" in line for line in print_reasons(results, name))
+    assert used
+
+
+@pytest.mark.parametrize("seed", [5, 8, 14, 20])
+@pytest.mark.parametrize("is_fair", [False, True])
+def test_responses_of_threads_that_wait_follow_from_the_work_and_the_waits_that_are_listed(
+    seed: int, *, is_fair: bool
+) -> None:
+    results = Results(analyse_architecture(architecture(random_robot_text(seed), is_fair=is_fair)), {})
+    waiting = [activity.id for activity in results.analysis.system.activities.values() if activity.suspends]
+    for name in waiting:
+        lines, worst = print_reasons(results, name), results.analysis.responses[name].worst.value
+        assert [(line, each) for line in lines for each in read_equations(line) if not each.holds] == [], name
+        if worst and not any(line.startswith("A = ") for line in lines):
+            assert is_close(recompute_response(lines, name) or Fraction(0), worst), name
+    assert waiting
 
 
 @pytest.mark.parametrize("seed", list_seeds(24))

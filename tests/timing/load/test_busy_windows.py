@@ -15,9 +15,9 @@ from archgen.timing.load.busy_windows import (
     DivergedError,
     GrowingLoad,
     SearchBudget,
+    find_worst_activation,
     longest_busy_period,
     subtract_demand,
-    worst_response,
 )
 from archgen.timing.load.event_streams import EventStream, max_arrivals
 from archgen.timing.run_analysis import analyse_architecture
@@ -61,8 +61,8 @@ def test_searches_find_what_steps_of_one_find(seed: int) -> None:
     assert whole == _slow(0, works, 0)
     rest = subtract_demand(load.demand_function(), GrowingLoad((own,)).demand_function())
     assert (
-        worst_response(own, rest, SearchBudget(), whole)
-        == worst_response(own, GrowingLoad(others).demand_function(), SearchBudget())
+        find_worst_activation(own, rest, SearchBudget(), whole).response
+        == find_worst_activation(own, GrowingLoad(others).demand_function(), SearchBudget()).response
         == _worst(own, others)
     )
 
@@ -125,4 +125,4 @@ def test_a_search_in_which_nothing_else_runs_ends_too() -> None:
     """Where jitter grew without end, each activation is looked at, and none needs a second look."""
     streams = (EventStream(60_000, 180_858_867_990, 5_610, 1, 1), EventStream(60_000, 361_717_702_050, 9_540, 1, 1))
     with pytest.raises(DivergedError):
-        worst_response(ActivityWork(14_700, streams), NO_DEMAND, SearchBudget(100_000))
+        find_worst_activation(ActivityWork(14_700, streams), NO_DEMAND, SearchBudget(100_000))

@@ -7,6 +7,7 @@ from pathlib import Path
 
 import pytest
 
+from archgen.emit.terminal.timing_text import format_timing
 from archgen.timing.chains.chain_bounds import bound_all_chains
 from archgen.timing.load.fair_cores import ThreadGroup
 from archgen.timing.run_analysis import analyse_architecture
@@ -17,6 +18,7 @@ from tests.timing.sketches import sketch
 
 MS = 10**6
 PERIODIC = "behaviour: periodic, bcet: 0 ms"
+LEAD_NOTE = "threads of h lead one another by at most 5 times a slice of 3 ms and a tick of 1 ms"
 
 
 def responses(nodes: dict[str, str], host: str, rest: str = "") -> dict[str, tuple[Fraction | None, str]]:
@@ -92,16 +94,28 @@ def test_a_share_of_each_core_that_others_take_makes_all_longer() -> None:
 
 def test_what_nobody_wrote_of_a_fair_order_is_said_at_the_figure() -> None:
     nodes = {"a @h": f"{PERIODIC}, period: 1 s, wcet: 2 ms", "b @h": f"{PERIODIC}, period: 1 s, wcet: 300 ms"}
-    said = "threads of h lead one another by at most 5 times a slice of 3 ms and a tick of 1 ms"
     for host, notes in (
-        ("{cores: 1}", (said,)),
-        ("{cores: 1, scheduling: fair}", (said,)),
+        ("{cores: 1}", (LEAD_NOTE,)),
+        ("{cores: 1, scheduling: fair}", (LEAD_NOTE,)),
         ("{cores: 1, scheduling: {fair: {slice: 3 ms, tick: 1 ms, lead: 5}}}", ()),
     ):
         text = sketch(nodes, "", f"hosts: {{h: {host}}}")
         analysis = analyse_architecture(architecture(text, is_fair=True))
         assert analysis.responses["a"].worst.assumptions == notes
         assert analysis.responses["b"].worst.assumptions == ()
+
+
+def test_what_only_a_wait_to_be_stored_assumes_of_a_fair_order_is_taken_for_granted() -> None:
+    nodes = {
+        "s @h": f"{PERIODIC}, period: 1 s, wcet: 1 ms, priority: 5",
+        "r +box": f"{PERIODIC}, period: 1 s, wcet: 250 ms",
+        "mate +box": f"{PERIODIC}, period: 100 ms, wcet: 6 ms",
+        "heavy @h": f"{PERIODIC}, period: 1 s, wcet: 300 ms",
+    }
+    text = sketch(nodes, "s>r", "hosts: {h: {cores: 1}}\ncontainers: {box: {threads: 1, host: h}}")
+    analysis = analyse_architecture(architecture(text, is_fair=True))
+    assert {response.tier for response in analysis.responses.values()} == {"priorities", "host"}
+    assert sum(LEAD_NOTE in line for line in format_timing(analysis, {}, ())) == 1
 
 
 def test_other_orders_of_single_cores_are_not_fair() -> None:

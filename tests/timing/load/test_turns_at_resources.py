@@ -133,7 +133,7 @@ def test_what_is_as_urgent_may_come_before() -> None:
     rivals = find_rivals(
         prepare(join([user("a", 10, "", 2), user("b", 20, "", 2)], order="fixed_priority")), "a", "gpu"
     )
-    assert rivals == Rivals((Competitor(20, (EventStream(100),), 40),), 0)
+    assert rivals == Rivals((Competitor("b", 20, (EventStream(100),), 40),), 0)
 
 
 @pytest.mark.parametrize(
@@ -156,7 +156,7 @@ def test_what_excludes_a_use_does_not_come_before_it(
 
 def test_work_of_rivals_in_a_window() -> None:
     """Every 100 ticks, up to 50 later: twice in 51 ticks."""
-    rivals = Rivals((Competitor(20, (EventStream(100),), 50), Competitor(5, (EventStream(10),), 0)), 7)
+    rivals = Rivals((Competitor("other", 20, (EventStream(100),), 50), Competitor("more", 5, (EventStream(10),), 0)), 7)
     assert [rivals.work_within(window) for window in (1, 50, 51)] == [25, 20 + 25, 40 + 30]
     assert rivals.share == Fraction(7, 10)
 

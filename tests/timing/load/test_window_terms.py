@@ -14,9 +14,9 @@ from archgen.timing.load.busy_windows import (
     GrowingLoad,
     SearchBudget,
     add_demands,
+    find_worst_activation,
     longest_busy_period,
     subtract_demand,
-    worst_response,
 )
 from archgen.timing.load.event_streams import EventStream
 from archgen.timing.load.level_cascades import EventOrigin, GateRule
@@ -106,10 +106,10 @@ def test_a_step_costs_its_terms_and_an_activation_eight() -> None:
     for term_count, ends in ((2 * 3 + 8, True), (2 * 3 + 8 - 1, False)):
         budget = SearchBudget(term_count)
         if ends:
-            assert worst_response(work, interference, budget) == 3
+            assert find_worst_activation(work, interference, budget).response == 3
         else:
             with pytest.raises(DivergedError):
-                worst_response(work, interference, budget)
+                find_worst_activation(work, interference, budget)
 
 
 def test_the_busy_period_is_the_first_moment_without_work() -> None:
@@ -126,11 +126,13 @@ def test_the_busy_period_is_the_first_moment_without_work() -> None:
 
 def test_a_response_counts_from_the_activation() -> None:
     """25 late: three come at once and the fourth at 5; of the first three the last is done at 12 when the fourth came."""
-    assert worst_response(ActivityWork(4, (LATE,)), NO_DEMAND, SearchBudget()) == 12
-    assert worst_response(ActivityWork(1, (LATE,)), NO_DEMAND, SearchBudget()) == 3
-    assert worst_response(ActivityWork(10, (PLAIN,)), NO_DEMAND, SearchBudget()) == 10  # just done when the next comes
-    assert worst_response(ActivityWork(7, ()), NO_DEMAND, SearchBudget()) == 7
-    assert worst_response(ActivityWork(0, (PLAIN,)), NO_DEMAND, SearchBudget()) == 0
+    assert find_worst_activation(ActivityWork(4, (LATE,)), NO_DEMAND, SearchBudget()).response == 12
+    assert find_worst_activation(ActivityWork(1, (LATE,)), NO_DEMAND, SearchBudget()).response == 3
+    assert (
+        find_worst_activation(ActivityWork(10, (PLAIN,)), NO_DEMAND, SearchBudget()).response == 10
+    )  # just done when the next comes
+    assert find_worst_activation(ActivityWork(7, ()), NO_DEMAND, SearchBudget()).response == 7
+    assert find_worst_activation(ActivityWork(0, (PLAIN,)), NO_DEMAND, SearchBudget()).response == 0
 
 
 def test_the_worst_activation_is_not_the_first() -> None:
@@ -138,7 +140,7 @@ def test_the_worst_activation_is_not_the_first() -> None:
     and come each 100: 114, 102, 116, 104, 118, 106, 94.
     """
     interference = GrowingLoad([ActivityWork(26, (EventStream(70),))]).demand_function()
-    assert worst_response(ActivityWork(62, (EventStream(100),)), interference, SearchBudget()) == 118
+    assert find_worst_activation(ActivityWork(62, (EventStream(100),)), interference, SearchBudget()).response == 118
 
 
 @pytest.mark.parametrize(

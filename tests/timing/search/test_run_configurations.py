@@ -105,6 +105,27 @@ def test_hundreds_of_processes_share_the_priorities_of_linux() -> None:
     assert priorities["n0"] == 98
 
 
+def test_each_process_has_one_core_where_none_is_written() -> None:
+    """The one with most to do first, where least is to do: 30 % on core 0, and 20 % and 10 % on core 1."""
+    nodes = {"a @p": "period: 100 ms, wcet: 30 ms", "b @p": "wcet: 10 ms", "c @p": "period: 10 ms, wcet: 2 ms"}
+    space = _space(nodes)
+    pinned = space.pin(RunConfiguration())
+    assert list(map(str, space.list_changes(pinned))) == ["a.timing.core=0", "c.timing.core=1", "b.timing.core=1"]
+    assert space.describe(pinned) == "each process on one core of p"
+    assert list(space.list_smaller(pinned)) == [RunConfiguration()]
+    assert _space(nodes, rest=f"hosts: {{p: {{cores: 1}}}}\n{CHAIN}").pin(RunConfiguration()) == RunConfiguration()
+    written = _space(nodes | {"d @p": "period: 1 s, wcet: 1 ms, cores: [0, 1]"})
+    assert written.pin(RunConfiguration()) == RunConfiguration()
+
+
+def test_what_is_in_one_process_is_on_one_core() -> None:
+    nodes = {"a +box": "period: 100 ms, wcet: 1 ms", "b +box": "wcet: 1 ms", "c @p": "period: 10 ms, wcet: 1 ms"}
+    space = _space(nodes, rest=_boxed())
+    changes = [list(map(str, space.list_changes(space.pin(RunConfiguration(own))))) for own in ((), ("b",))]
+    in_box = ["c.timing.core=0", "a.timing.core=1", "b.timing.core=1"]
+    assert changes == [in_box, ["b.container=none", *in_box]]
+
+
 def test_one_process_moves_to_an_end_or_by_one_place() -> None:
     nodes = {"a @p": "period: 100 ms, wcet: 1 ms", "b @p": "wcet: 1 ms", "c @p": "period: 10 ms, wcet: 1 ms"}
     space = _space(nodes)
