@@ -69,6 +69,11 @@ class GenerationContext:
         return self.components is None and self.host is None
 
     @property
+    def element_count(self) -> int:
+        """How many components and nodes there are, asked for or not: what templates may use depends on it."""
+        return len(self.architecture.components) + len(self.architecture.nodes)
+
+    @property
     def part(self) -> str:
         """What files are called after that several parts of `--select` would make: `owner-certh`; empty where nothing is selected.
 
