@@ -8,15 +8,22 @@ from __future__ import annotations
 import cProfile
 import math
 import shutil
+import sys
+from collections import Counter
 from importlib import import_module
 from pathlib import Path
-from typing import cast
+from types import FrameType
+from typing import TYPE_CHECKING, cast
 
 import pytest
 from click.testing import CliRunner
 
 from archgen.cli import main
 from tests.property_sizes import try_some
+from tests.running import ROOT
+
+if TYPE_CHECKING:
+    from _typeshed import TraceFunction
 
 _BENCHMARK = import_module("benchmarks.generate")
 _STEEPEST = 1.3
@@ -66,6 +73,28 @@ def count_calls(words: list[str]) -> _Calls:
     return {place: calls for place, (_, calls, *_) in stats.items()}
 
 
+def count_lines(words: list[str]) -> _Calls:
+    """Run a verb, and count how many lines each function of the views runs: turns of loops that call nothing are seen, too."""
+    views = str(ROOT / "archgen" / "views")
+    lines: Counter[tuple[str, int, str]] = Counter()
+
+    def trace(frame: FrameType, event: str, _: object) -> TraceFunction | None:
+        code = frame.f_code
+        if not code.co_filename.startswith(views):
+            return None
+        lines[code.co_filename, code.co_firstlineno, code.co_name] += event == "line"
+        return trace
+
+    before = sys.gettrace()
+    sys.settrace(trace)
+    try:
+        done = CliRunner().invoke(main, words)
+    finally:
+        sys.settrace(before)
+    assert done.exit_code in (0, 1), done.output
+    return lines
+
+
 def find_steep(counts: list[_Calls]) -> list[str]:
     """Name the functions whose calls grow faster than n log n, whatever constant number of them there is."""
     steep = []
@@ -110,6 +139,14 @@ def test_no_verb_calls_anything_more_than_n_log_n_times(dimension: str, tmp_path
     for verb, words in verbs.items():
         count_calls(_fill_in(words, projects[0]))  # what is imported or made once is not counted
         steep += [f"{verb}: {each}" for each in find_steep([count_calls(_fill_in(words, each)) for each in projects])]
+    assert not steep, "\n".join(steep)
+
+
+def test_no_loop_of_an_export_takes_more_than_n_log_n_turns(tmp_path: Path) -> None:
+    words = ("export", "mermaid", "-C", "{project}", "-o", "{out}/m.md")
+    projects = make_projects("components", tmp_path)
+    count_lines(_fill_in(words, projects[0]))
+    steep = find_steep([count_lines(_fill_in(words, each)) for each in projects])
     assert not steep, "\n".join(steep)
 
 

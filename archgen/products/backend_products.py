@@ -47,7 +47,7 @@ def _render_backend(inputs: ProductInputs, backend: Backend) -> file_tree.FileTr
     views, findings = make_backend_views(inputs, backend, context)
     for finding in findings:
         inputs.options.warn(f"{finding.span}: {finding.message}")
-    files, problems = text.render_backend(backend, views)
+    files, problems = text.render_backend(backend, views, text.DEFAULT_LIMITS.scale_to(context.element_count))
     raise_problems(problems)
     return files or file_tree.make_file_tree(())
 

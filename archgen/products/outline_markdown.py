@@ -19,7 +19,7 @@ def render_outline_markdown(outline: Outline, graphs: tuple[Graph, ...] = ()) ->
         backend_manifests.read_shipped_backend("wiki"), files=files, views=("outline", "graphs", "places")
     )
     # Markdown has no page for an element; the template may link only to sections of this document.
-    section_anchors = [section.anchor for section in _walk_sections(outline.sections)]
+    section_anchors = dict.fromkeys((section.anchor for section in _walk_sections(outline.sections)), True)
     written_files, problems = text.render_backend(
         backend, {"outline": outline, "graphs": graphs, "places": section_anchors}
     )

@@ -226,7 +226,9 @@ def _render_files(
     paths = index_model_paths(context.architecture)
     views = {name: write_model_paths(view, paths) for name, view in views.items()}
     places = {path: place for place, path in paths.items()}
-    files, problems = text.render_workspace(backend, views, places, answer_store=open_answer_store(cache_folder()))
+    limits = text.DEFAULT_LIMITS.scale_to(context.element_count)
+    store = open_answer_store(cache_folder())
+    files, problems = text.render_workspace(backend, views, places, limits, store)
     raise_problems(problems)
     return files, findings
 

@@ -108,7 +108,8 @@ class WireStates:
         self.is_request = [wire.is_request for wire in wires]
         self.callback = [wire.callback for wire in wires]
         self.source = plan.wire_sources
-        self.keeps_order = [not _may_overtake(plan, source) for source in plan.wire_sources]
+        overtaken = _find_overtaken(plan)
+        self.keeps_order = [source not in overtaken for source in plan.wire_sources]
         """Whether samples of a source never overtake one another."""
         self.newest_job = [-1] * len(wires)
         """The producer's job whose sample the reader has, or had when it last started."""
@@ -168,9 +169,9 @@ def _find_rivals(plan: SimulationPlan) -> list[tuple[int, ...]]:
     ]
 
 
-def _may_overtake(plan: SimulationPlan, source: int) -> bool:
-    """Return whether a later job of an activity may end before an earlier one."""
-    return any(callback.activity == source and callback.group == REENTRANT for callback in plan.callbacks)
+def _find_overtaken(plan: SimulationPlan) -> frozenset[int]:
+    """Return the activities of which a later job may end before an earlier one."""
+    return frozenset(callback.activity for callback in plan.callbacks if callback.group == REENTRANT)
 
 
 def _sampled_queues(plan: SimulationPlan, planned: PlannedActivity) -> tuple[int, ...]:

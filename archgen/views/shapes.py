@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import dataclasses
 from collections.abc import Collection, Iterable, Iterator, Mapping
+from functools import cache
 from typing import Any, Literal
 
 from archgen.frozen import NamedTuple, dataclass, field, replace
@@ -411,13 +412,42 @@ def head_part(title: str, blocks: Iterable[Block]) -> Iterator[Block]:
 
 
 def shape_to_plain(value: object) -> Any:  # noqa: ANN401 - plain data has no narrower type
-    """Turn a shape into dicts, lists and scalars, for templates and JSON; dataclasses add their name as `shape`."""
-    if dataclasses.is_dataclass(value) and not isinstance(value, type):
-        fields = {f.name: shape_to_plain(getattr(value, f.name)) for f in dataclasses.fields(value)}
-        # Templates branch on this tag (`block.shape`), so renaming a shape class breaks users' backends.
-        return {"shape": type(value).__name__.lower(), **fields}
+    """Turn a shape into dicts, lists and scalars, for templates and JSON; dataclasses add their name as `shape`.
+
+    Runs of text that are equal become the same dict, which nobody may write to: documents repeat most of their words.
+    """
+    return _to_plain(value, {})
+
+
+def _to_plain(value: object, runs: dict[Text, dict[str, Any]]) -> Any:  # noqa: ANN401 - as above
+    kind = value.__class__
+    if kind in _SCALARS:
+        return value
+    if kind is Text:
+        # A meter of 1 and one of 1.0 are equal, and are not written alike.
+        if value.meter or value.pieces:
+            return _tag_fields(value, runs)
+        if value not in runs:
+            runs[value] = _tag_fields(value, runs)
+        return runs[value]
+    if kind is tuple or isinstance(value, (tuple, list)):
+        return [_to_plain(item, runs) for item in value]
     if isinstance(value, Mapping):
-        return {str(key): shape_to_plain(item) for key, item in value.items()}
-    if isinstance(value, (tuple, list)):
-        return [shape_to_plain(item) for item in value]
-    return value
+        return {str(key): _to_plain(item, runs) for key, item in value.items()}
+    if isinstance(value, (str, int)):  # an enumeration
+        return str.__str__(value) if isinstance(value, str) else int(value)
+    return _tag_fields(value, runs) if dataclasses.is_dataclass(value) and not isinstance(value, type) else value
+
+
+_SCALARS = frozenset({str, int, float, bool, type(None)})
+
+
+def _tag_fields(value: Any, runs: dict[Text, dict[str, Any]]) -> dict[str, Any]:  # noqa: ANN401 - any dataclass
+    # Templates branch on this tag (`block.shape`), so renaming a shape class breaks users' backends.
+    fields = {name: _to_plain(getattr(value, name), runs) for name in _name_fields(value.__class__)}
+    return {"shape": value.__class__.__name__.lower(), **fields}
+
+
+@cache
+def _name_fields(shape: type) -> tuple[str, ...]:
+    return tuple(field.name for field in dataclasses.fields(shape))

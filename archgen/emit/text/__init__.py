@@ -6,6 +6,7 @@ The templates run in a process of their own (`template_worker`). What comes back
 from __future__ import annotations
 
 import json
+import marshal
 import subprocess
 import sys
 from collections.abc import Mapping
@@ -98,16 +99,17 @@ def _render_files(
     key = make_answer_key(content, templates) if answer_store.folder is not None else ""
     answer = load_answer(answer_store, key)
     if answer is None:
-        answer = _run_worker(json.dumps(content, default=_make_plain).encode(), limits)
+        answer = _run_worker(_pack_request(content), limits)
         keep_answer(answer_store, key, answer)
     return answer
 
 
-def _make_plain(value: object) -> object:
-    # Imported here: what generators read is plain already.
+def _pack_request(content: Mapping[str, Any]) -> bytes:
+    """Return a request as bytes: what stands in it many times is written once, unlike in JSON."""
+    # Imported here: where nothing changed, nothing is rendered.
     from archgen.views.shapes import shape_to_plain
 
-    return shape_to_plain(value)
+    return marshal.dumps(shape_to_plain(content))
 
 
 class _AssetError(Exception):

@@ -23,6 +23,22 @@ class TemplateLimits:
     output: int = 64_000_000
     files: int = 20_000
 
+    def scale_to(self, element_count: int) -> TemplateLimits:
+        """Return the limits for a project with so many components and nodes: more for a large one, within bounds of their own."""
+        factor = min(max(element_count / _FREE_ELEMENTS, 1), _MAX_FACTOR)
+        return TemplateLimits(
+            round(self.computing * factor),
+            self.waiting * factor,
+            min(round(self.memory * factor), max(self.memory, _MAX_MEMORY)),
+            round(self.output * factor),
+            round(self.files * factor),
+        )
+
+
+_FREE_ELEMENTS = 2_500
+_MAX_FACTOR = 10
+_MAX_MEMORY = 4_000_000_000
+
 
 def confine_process(limits: TemplateLimits) -> None:
     """Bind this process: computing time, memory, no files written, few open ones.

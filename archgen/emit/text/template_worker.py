@@ -1,16 +1,19 @@
 """Render a backend's templates in a process of their own, confined, and answer with what they wrote.
 
-Reads one JSON object from standard input and writes one to standard output. Templates are untrusted: they get plain
+Reads one marshalled object from standard input and writes one of JSON to standard output: nothing that templates wrote is unpacked otherwise. Templates are untrusted: they get plain
 data, no attribute that leads into Python, no file but those in their own folder, and limited time, memory and output.
 """
 
 from __future__ import annotations
 
+import gc
 import json
+import marshal
 import posixpath
 import re
 import sys
 from collections.abc import Callable, Iterable, Iterator, Mapping
+from functools import cache
 from pathlib import Path
 from traceback import walk_tb
 from typing import Any, NoReturn
@@ -23,6 +26,7 @@ from archgen.emit.safe_names import explain_long_path, is_safe_path, make_safe_p
 from archgen.emit.text.template_filters import TEMPLATE_FILTERS, make_escape_filter
 from archgen.emit.text.template_limits import MAX_TEMPLATE_BYTES, TemplateLimits, confine_process
 from archgen.frozen import NamedTuple
+from archgen.grouping import group_pairs
 
 _ESCAPED_ENDINGS = (".html", ".htm", ".xhtml", ".xml", ".svg")
 _MAX_OBJECT_NAME = 200
@@ -56,6 +60,19 @@ class TemplateLoader(BaseLoader):
         return path.read_text("utf-8"), template, None
 
 
+class _Sandbox(ImmutableSandboxedEnvironment):
+    """The sandbox of Jinja2, quick where it is safe at once: what is read of plain data is mostly a key of a dict."""
+
+    def getattr(self, obj: Any, attribute: str) -> Any:  # noqa: ANN401 - as Jinja2 says
+        """Return the value of a key that is no method of dicts, without asking Python for an attribute first."""
+        if obj.__class__ is dict and attribute in obj and attribute not in _DICT_ATTRIBUTES:
+            return obj[attribute]
+        return super().getattr(obj, attribute)
+
+
+_DICT_ATTRIBUTES = frozenset(dir(dict))
+
+
 def create_sandbox(
     folder: Path, escapes: Mapping[str, Mapping[str, str]], project_values: object = None
 ) -> ImmutableSandboxedEnvironment:
@@ -63,7 +80,7 @@ def create_sandbox(
 
     `escapes` become filters of these names. The texts in `project_values` are printed whatever they say.
     """
-    sandbox = ImmutableSandboxedEnvironment(
+    sandbox = _Sandbox(
         loader=TemplateLoader(folder),
         autoescape=lambda name: bool(name) and name.removesuffix(".j2").endswith(_ESCAPED_ENDINGS),
         undefined=StrictUndefined,
@@ -189,9 +206,10 @@ def _render_files(
     contracts = [
         [sandbox.from_string(entry.get(key) or "") for key in ("expects", "offers")] for entry in request["files"]
     ]
+    finders = _make_finders(request["data"])
     for file in planned:
         current_template["template"] = file.entry["template"]
-        values = {**_list_values(request, file.item, file.key), "path": file.path}
+        values = {**finders, **_list_values(request, file.item, file.key), "path": file.path}
         values["href"] = _make_href(file.path, paths)
         text = _render_bounded(sandbox.get_template(file.entry["template"]), values, remaining)
         remaining -= len(text)
@@ -288,6 +306,23 @@ def _make_href(path: str, paths: Mapping[str, str]) -> Callable[[str | None], st
     return href
 
 
+def _make_finders(data: Mapping[str, Any]) -> dict[str, Callable[..., Any]]:
+    """Make templates' functions that find a picture and the pages below one: no page looks through those of all others."""
+
+    @cache
+    def index_pictures() -> dict[str, Any]:
+        return {picture["id"]: picture for picture in (*data.get("graphs", ()), *data.get("sequences", ()))}
+
+    @cache
+    def index_pages() -> Mapping[str, list[Any]]:
+        return group_pairs((page["crumbs"][-1][1], page) for page in data.get("pages", ()) if page["crumbs"])
+
+    return {
+        "picture_of": lambda picture_id: index_pictures().get(picture_id),
+        "pages_below": lambda anchor: index_pages().get(anchor, []),
+    }
+
+
 def _render_bounded(template: Template, values: Mapping[str, Any], remaining: int) -> str:
     """Render a template piece by piece, and stop as soon as it is too much."""
     parts = []
@@ -318,7 +353,11 @@ def _locate_error(error: BaseException, current_template: Mapping[str, str]) -> 
 
 def main() -> NoReturn:
     """Answer one request. Called by name from the command line of `_run_worker`."""
-    request = json.load(sys.stdin.buffer)
+    # What is read stays: nobody need look for circles in it, neither while it is read nor later.
+    gc.disable()
+    request = marshal.loads(sys.stdin.buffer.read())  # noqa: S302 - the parent wrote it
+    gc.freeze()
+    gc.enable()
     # After the request is read, before the first template is: no file can be opened for writing from here on.
     confine_process(TemplateLimits(**request["limits"]))
     answer = json.dumps(render_request(request))

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any
 from archgen.bringup.plan_shapes import StartPlan
 from archgen.diagnostics import NO_SPAN, Diagnostic, Rule, Severity, Span
 from archgen.frozen import dataclass, field
+from archgen.grouping import group_pairs
 from archgen.model.architecture import Architecture
 from archgen.model.node import Node
 from archgen.model.ros_distro import is_ros_1
@@ -68,6 +69,11 @@ class GenerationContext:
         return self.components is None and self.host is None
 
     @property
+    def element_count(self) -> int:
+        """How many components and nodes there are, asked for or not: what templates may use depends on it."""
+        return len(self.architecture.components) + len(self.architecture.nodes)
+
+    @property
     def part(self) -> str:
         """What files are called after that several parts of `--select` would make: `owner-certh`; empty where nothing is selected.
 
@@ -100,13 +106,15 @@ class GenerationContext:
         }
 
     @cached_property
+    def implementing_nodes(self) -> Mapping[str, list[Node]]:
+        """The nodes of each component, asked for or not, by the component's complete id."""
+        nodes = self.architecture.nodes.values()
+        return group_pairs((component, node) for node in nodes for component in dict.fromkeys(node.implements))
+
+    @cached_property
     def nodes_by_component(self) -> Mapping[str, Node]:
         """The node of each component, asked for or not, by the component's complete id; of several the first."""
-        nodes: dict[str, Node] = {}
-        for node in self.architecture.nodes.values():
-            for component_id in node.implements:
-                nodes.setdefault(component_id, node)
-        return nodes
+        return {component_id: nodes[0] for component_id, nodes in self.implementing_nodes.items()}
 
     @property
     def ros_generation(self) -> int:

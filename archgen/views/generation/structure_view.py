@@ -6,6 +6,7 @@ from collections.abc import Collection, Iterable
 from typing import Any
 
 from archgen.bringup.program_names import name_ports
+from archgen.grouping import group_pairs
 from archgen.model.architecture import Architecture
 from archgen.model.component import Component, Input, Output
 from archgen.model.node import Endpoint, Node
@@ -24,6 +25,7 @@ def make_view(context: GenerationContext) -> GeneratedView:
     wanted = {each for each in (*architecture.shells, *architecture.components) if each in leaves or each in shells}
     connections = _record_connections(architecture, leaves)
     shows_ros = context.level == "implementation"
+    nodes_on_hosts = group_pairs((node.host, node.id) for node in context.wanted_nodes.values())
     return GeneratedView(
         {
             "project": {
@@ -32,8 +34,8 @@ def make_view(context: GenerationContext) -> GeneratedView:
                 "version": architecture.project.version or "",
                 "description": architecture.project.description or "",
             },
-            "groups": _record_groups(architecture, wanted),
-            "components": [_record_component(architecture, each, wanted) for each in _sort_components(context, wanted)],
+            "groups": _record_groups(context, wanted),
+            "components": [_record_component(context, each, wanted) for each in _sort_components(context, wanted)],
             "connections": connections,
             "arrows": _merge_connections(connections),
             "nodes": _record_nodes(context) if shows_ros else [],
@@ -42,11 +44,11 @@ def make_view(context: GenerationContext) -> GeneratedView:
                 {
                     "id": host.id,
                     "title": host.title,
-                    "nodes": [node.id for node in context.wanted_nodes.values() if node.host == host.id],
+                    "nodes": nodes_on_hosts.get(host.id, []),
                     "place": write_place(host.at),
                 }
                 for host in architecture.hosts.values()
-                if shows_ros and (context.is_whole or host.id in {node.host for node in context.wanted_nodes.values()})
+                if shows_ros and (context.is_whole or host.id in nodes_on_hosts)
             ],
         }
     )
@@ -76,7 +78,8 @@ def _sort_components(context: GenerationContext, wanted: Collection[str]) -> lis
     return sorted(in_order, key=lambda each: places[each.partition(".")[0]])
 
 
-def _record_groups(architecture: Architecture, wanted: Collection[str]) -> list[dict[str, Any]]:
+def _record_groups(context: GenerationContext, wanted: Collection[str]) -> list[dict[str, Any]]:
+    architecture = context.architecture
     outermost: dict[str, list[str]] = {}
     for each in (*architecture.shells.values(), *architecture.components.values()):
         if each.id in wanted and each.parent is None:
@@ -88,15 +91,16 @@ def _record_groups(architecture: Architecture, wanted: Collection[str]) -> list[
             "description": group.description or "",
             "owner": group.owner or "",
             "place": write_place(group.at),
-            "components": [_record_component(architecture, each, wanted) for each in outermost.get(group.id, ())],
+            "components": [_record_component(context, each, wanted) for each in outermost.get(group.id, ())],
         }
         for group in architecture.groups.values()
     ]
     return [each for each in records if each["components"]]
 
 
-def _record_component(architecture: Architecture, component_id: str, wanted: Collection[str]) -> dict[str, Any]:
+def _record_component(context: GenerationContext, component_id: str, wanted: Collection[str]) -> dict[str, Any]:
     """Return a component with its ports and, below `components`, what stands inside, to any depth."""
+    architecture = context.architecture
     component = _find_component(architecture, component_id)
     return {
         "id": component.id,
@@ -111,10 +115,10 @@ def _record_component(architecture: Architecture, component_id: str, wanted: Col
         "status": component.status or "",
         "tags": list(component.tags),
         "is_composed": component.id in architecture.shells,
-        "nodes": [node.id for node in architecture.nodes.values() if component.id in node.implements],
+        "nodes": [node.id for node in context.implementing_nodes.get(component.id, ())],
         "inputs": [_record_port(architecture, port) for port in component.inputs.values()],
         "outputs": [_record_port(architecture, port) for port in component.outputs.values()],
-        "components": [_record_component(architecture, each, wanted) for each in component.children if each in wanted],
+        "components": [_record_component(context, each, wanted) for each in component.children if each in wanted],
         "place": write_place(component.at),
     }
 

@@ -212,6 +212,15 @@ def test_a_busy_machine_ends_no_template_that_computes_little() -> None:
     assert TemplateLimits().waiting > 20 * TemplateLimits().computing
 
 
+def test_limits_grow_with_the_project_and_end() -> None:
+    least = TemplateLimits()
+    assert least.scale_to(2_500) == least
+    large = least.scale_to(12_000)
+    assert (large.computing, large.files, large.output, large.memory) == (96, 96_000, 307_200_000, 4_000_000_000)
+    assert least.scale_to(25_000) == least.scale_to(10_000_000)
+    assert least.scale_to(25_000).computing == 200
+
+
 def test_for_each_must_be_there(make: Make) -> None:
     assert "no `record.nodes` in the data" in fault(make("x", "x.md", "    for_each: record.nodes\n"))
 

@@ -2,7 +2,11 @@
 
 from __future__ import annotations
 
+import sys
+from dataclasses import asdict
 from pathlib import Path
+from types import FrameType
+from typing import TYPE_CHECKING
 
 import pytest
 from markdown_it import MarkdownIt
@@ -17,9 +21,14 @@ from archgen.emit.text.template_filters import (
     draw_mermaid_sequence,
     safe_commonmark,
 )
+from archgen.emit.text.template_limits import TemplateLimits
+from archgen.emit.text.template_worker import render_request
 from archgen.views.picture_shapes import Arrow, Box, Cluster, Graph, Lifeline, SequenceChart, SequenceMessage
 from archgen.views.shapes import Column, Facts, Figure, Markdown, Page, Paragraph, Section, Table, Text, shape_to_plain
 from tests.running import ROOT, archgen_here
+
+if TYPE_CHECKING:
+    from _typeshed import TraceFunction
 
 EVIL = '<script>alert(1)</script> *a* _b_ `c` [d](javascript:e) | ![f](g) {{7*7}} "] end'
 HOME = ("Overview", "page:index")
@@ -88,6 +97,49 @@ def test_a_page_for_each_group_and_a_start_page() -> None:
         "\n## Components\n\n- [Sensing](../components/g.a.md)\n"
     )
     assert files["components/g.a.md"].rstrip() == "# Sensing\n\n[Sensing](../groups/g.md)\n\nPlain *words*.\n\nSensing"
+
+
+def _count_template_lines(group_count: int) -> int:
+    """Render a wiki of as many groups, with a picture and a component each, and count the lines that its templates run."""
+    groups = [f"g{number}" for number in range(group_count)]
+    pages = [Page("index.html", "page:index", "Robot", "overview", Section("page:index", "Robot", ()))]
+    for name in groups:
+        figure = Figure(f"figure:{name}", f"groups/{name}", name, "")
+        anchor, crumbs = f"group:{name}", (HOME, (name, f"group:{name}"))
+        pages.append(Page(f"{name}.html", anchor, name, "groups", Section(anchor, name, (figure,)), (HOME,)))
+        section = Section(f"component:{name}.a", name, (figure,))
+        pages.append(Page(f"{name}.a.html", section.anchor, name, "components", section, crumbs))
+    graphs = [Graph(f"groups/{name}", name, "group", (Box(name, name),), (), kind="group") for name in groups]
+    backend = read_shipped_backend("wiki")
+    request = {
+        "templates": str(backend.folder / "templates"),
+        "files": [asdict(file) for file in backend.files],
+        "data": shape_to_plain({"pages": pages, "graphs": graphs, "sequences": ()}),
+        "options": {},
+        "escapes": {},
+        "limits": asdict(TemplateLimits()),
+        "is_workspace": False,
+    }
+    count = 0
+
+    def trace(frame: FrameType, event: str, _: object) -> TraceFunction | None:
+        nonlocal count
+        count += event == "line"
+        return trace if frame.f_code.co_filename.endswith(".j2") else None
+
+    before = sys.gettrace()
+    sys.settrace(trace)
+    try:
+        answer = render_request(request)
+    finally:
+        sys.settrace(before)
+    assert len(answer["files"]) == 2 * group_count + 1
+    return count
+
+
+def test_templates_do_as_much_for_each_page_however_many_there_are() -> None:
+    few, more, most = map(_count_template_lines, (20, 40, 80))
+    assert most - more < 2.05 * (more - few)
 
 
 def test_hostile_text_stays_text() -> None:
