@@ -49,19 +49,31 @@ def make_answer_key(request: dict[str, Any], templates: Path) -> str:
 
 
 def _digest_view(view: Any) -> bytes:  # noqa: ANN401 - data of any shape
-    """Return a digest of a view. What stands in one of its lists and in a part of another is digested once."""
-    lists = {key for key, value in view.items() if type(value) is list} if type(view) is dict else set[str]()
+    """Return a digest of a view. What stands in one of its lists and in a part of another, as programs in packages, is digested once."""
+    if type(view) is not dict:
+        return _digest_plain(view)
+    list_keys = {key for key, value in view.items() if type(value) is list}
     known_digests: dict[int, bytes] = {}
 
-    def digest(value: Any) -> bytes:  # noqa: ANN401
-        if id(value) not in known_digests:
-            data = value
-            if type(value) is dict and not lists.isdisjoint(value):
-                data = {key: [*map(digest, each)] if key in lists else each for key, each in value.items()}
-            known_digests[id(value)] = hashlib.sha256(marshal.dumps(data, 0)).digest()
-        return known_digests[id(value)]
+    def digest_record(record: object) -> bytes:
+        if id(record) not in known_digests:
+            known_digests[id(record)] = _digest_plain(digest_lists(record) if type(record) is dict else record)
+        return known_digests[id(record)]
 
-    return digest(view)
+    def digest_lists(record: dict[Any, Any]) -> dict[Any, Any]:
+        """Return a record with digests in those of its lists that have the name of a list of the view."""
+        if list_keys.isdisjoint(record):
+            return record
+        return {
+            key: [*map(digest_record, value)] if key in list_keys and type(value) is list else value
+            for key, value in record.items()
+        }
+
+    return _digest_plain(digest_lists(view))
+
+
+def _digest_plain(value: object) -> bytes:
+    return hashlib.sha256(marshal.dumps(value, 0)).digest()
 
 
 def encode_texts(rows: Iterable[Sequence[Any]]) -> list[Sequence[Any]]:

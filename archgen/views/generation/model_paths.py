@@ -85,5 +85,5 @@ def _write_paths(data: object, paths: Mapping[str, str], written_by_id: dict[int
 
 
 def _find_path(place: str, paths: Mapping[str, str]) -> str:
-    path = paths.get(place)
-    return path or ((written := _PLACE.match(place)) and written[1]) or place
+    written = _PLACE.match(place)
+    return paths.get(place) or (written[1] if written else place)
