@@ -383,6 +383,15 @@ class _Planner:
         best = max(likeness, key=lambda each: (likeness[each], each), default="")
         return best if best and any(likeness[best]) else ""
 
+    def _find_heir(self, entry: RecordedFile) -> str:
+        """Return a file of the user's own that has ports of one now and had not before: its node is one with another now."""
+        for path, heir in self.entries.items():
+            old_heir = self.old_record.files.get(path)
+            old_elements = _list_elements(old_heir) if old_heir else set()
+            if heir.once and _list_elements(entry) & (_list_elements(heir) - old_elements):
+                return path
+        return ""
+
     def finish(self) -> WorkspacePlan:
         """Return the plan."""
         old_files = self.old_record.files
@@ -393,7 +402,10 @@ class _Planner:
                 words = f"{_OUTLIVED}; it may become {successor}, which is empty: move what you wrote there, and take this file away"
                 self.steps.append(FileStep(path, "yours", findings=(CodeFinding(words, 1, 1),)))
             else:
-                self.steps.append(FileStep(path, "yours", _OUTLIVED))
+                heir = self._find_heir(entry)
+                self.steps.append(
+                    FileStep(path, "yours", f"{_OUTLIVED}: {heir} has its ports now" if heir else _OUTLIVED)
+                )
         intended_files = dict(self.entries)
         for path in self.writes:
             if path in old_files:
