@@ -18,7 +18,6 @@ import stat
 import sys
 import time
 from itertools import takewhile
-from operator import attrgetter
 from typing import TYPE_CHECKING, Any, cast
 
 from archgen import cache
@@ -63,10 +62,8 @@ _NOTED_FUNCTIONS: tuple[tuple[Any, str, str], ...] = (
 
 Folders may be made and removed: what is made in them is opened to be written.
 """
-_IDENTITY = attrgetter("st_mode", "st_uid", "st_gid", "st_dev", "st_ino")
-_STATE = attrgetter("st_mode", "st_uid", "st_gid", "st_dev", "st_ino", "st_size", "st_mtime_ns", "st_ctime_ns")
-_FACTS_OF_FILES = 8
-"""So much is said of a file, the date of its last change at the end."""
+_FACTS_OF_FILES = 7
+"""So much is said of a file before the date of its last change."""
 _GIT_WORD = re.compile(
     r"log|ls-tree|rev-parse|HEAD|-[1rz]|--format=%(?:h|cs)|--(?:no-show-signature|verify|quiet|show-prefix)"
     r"|--is-(?:bare-repository|shallow-repository|inside-git-dir)"
@@ -86,7 +83,7 @@ class RunKeeper:
         """Take the words of the command line, and what asks git in a folder."""
         folder = find_cache_path()
         self._path = folder and os.path.join(folder, _name_run(words) + _SUFFIX)  # noqa: PTH118 - pathlib takes longer to load than all this takes
-        self._asked: dict[tuple[str, str], tuple[object, ...]] = {}
+        self._asked: dict[tuple[str, str], str] = {}
         """What was asked, with what the disk said first: of files and folders when they changed last."""
         self._said: list[tuple[int, str]] = []
         self._is_keepable = self._path is not None
@@ -182,8 +179,9 @@ class RunKeeper:
             else:
                 question = (kind if options.get("follow_symlinks", True) else "lstat", os.fsdecode(path or "."))
                 if question not in self._asked:
-                    self._asked[question] = facts = _read_early(*question)
-                    if len(facts) == _FACTS_OF_FILES and facts[-1] >= self._settled_before:
+                    self._asked[question] = answer = _ask_early(*question)
+                    *facts, changed = answer.split(" ")
+                    if kind != "rights" and len(facts) == _FACTS_OF_FILES and int(changed) >= self._settled_before:
                         # It cannot be kept: there is nothing more to note.
                         self._is_keepable = self._is_noting = False
             return function(path, *arguments, **options)
@@ -198,13 +196,13 @@ class RunKeeper:
             result = ask(folder, words)
         finally:
             self._is_noting = True
-        question, answer = ("git", json.dumps([os.path.abspath(folder), words])), (_digest(repr(result)),)  # noqa: PTH100 - as above
+        question, answer = ("git", json.dumps([os.path.abspath(folder), words])), _digest(repr(result))  # noqa: PTH100 - as above
         self._is_keepable &= self._asked.setdefault(question, answer) == answer
         return result
 
     def _ask_again(self, kind: str, path: str) -> str:
         if kind != "git":
-            return _write_facts(_read_facts(kind, path))
+            return _ask_disk(kind, path)
         folder, words = json.loads(path)
         if not _are_plain(words):
             raise ValueError(path)
@@ -213,25 +211,25 @@ class RunKeeper:
     def _settle_answer(self, kind: str, path: str) -> str:
         """Return what the disk answers, or what git said. Raise _UnkeptError where the disk may have said otherwise during the run."""
         if kind == "git":
-            return _write_facts(self._asked[kind, path])
+            return self._asked[kind, path]
         try:
             status = _LSTAT(path)
         except OSError:
             status = None
         is_link = status is not None and stat.S_ISLNK(status.st_mode)
-        facts = _read_facts(kind, path, None if is_link else status)
-        early_facts = self._asked.get((kind, path))
-        if early_facts and early_facts != (_read_early(kind, path) if kind == "names" else facts):
+        answer = _ask_disk(kind, path, None if is_link else status)
+        early_answer = self._asked.get((kind, path))
+        if early_answer and early_answer != (_ask_early(kind, path) if kind == "names" else answer):
             raise _UnkeptError
         try:
             is_settled = status is None or self._is_settled(status, kind)
             if is_settled and is_link:
                 is_settled = self._is_settled(_STAT(path), kind)
         except OSError:
-            is_settled = True
+            return answer
         if not is_settled:
             raise _UnkeptError
-        return _write_facts(facts)
+        return answer
 
     def _is_settled(self, status: os.stat_result, kind: str) -> bool:
         # Of folders on the way it counts which they are: `/tmp` changes all the time.
@@ -304,30 +302,29 @@ def _list_code() -> dict[tuple[str, str], str]:
     return {("bytes", str(path)): "" for path in (*files, *sys.path) if path}
 
 
-def _write_facts(facts: tuple[object, ...]) -> str:
-    return " ".join(map(str, facts))
-
-
-def _read_early(kind: str, path: str) -> tuple[Any, ...]:
+def _ask_early(kind: str, path: str) -> str:
     """Return what the disk answers while the run goes on: of a folder when it changed last, not all that it holds."""
-    return _read_facts("bytes" if kind == "names" else kind, path)
+    return _ask_disk("bytes" if kind == "names" else kind, path)
 
 
-def _read_facts(kind: str, path: str, known_status: os.stat_result | None = None) -> tuple[Any, ...]:
-    """Return what the disk answers. What is known already of a file that is no link is not asked again."""
+def _ask_disk(kind: str, path: str, known_status: os.stat_result | None = None) -> str:
+    """Return what the disk answers, as short text. What is known already of a file that is no link is not asked again."""
     try:
         if kind == "names":
             with _SCANDIR(path) as entries:
-                return (_digest(repr(sorted(map(_describe_entry, entries)))),)
+                return _digest(repr(sorted(map(_describe_entry, entries))))
         status = known_status or (_LSTAT(path) if kind == "lstat" else _STAT(path))
+        identity = f"{status.st_mode} {status.st_uid} {status.st_gid} {status.st_dev} {status.st_ino}"
         if stat.S_ISLNK(status.st_mode):
-            return (*_IDENTITY(status), _READLINK(path))
+            return f"{identity} {_READLINK(path)}"
         if kind == "rights":
-            return (*_IDENTITY(status), [_ACCESS(path, right) for right in (os.R_OK, os.W_OK, os.X_OK)])
+            return f"{identity} {[_ACCESS(path, right) for right in (os.R_OK, os.W_OK, os.X_OK)]}"
     except OSError as error:
-        return ("no:", error.errno)
-    # No file is written without a change of the last date, whatever dates its writer sets.
-    return _IDENTITY(status) if stat.S_ISDIR(status.st_mode) and kind != "bytes" else _STATE(status)
+        return f"no: {error.errno}"
+    if stat.S_ISDIR(status.st_mode) and kind != "bytes":
+        return identity
+    # No file is written without a change of the last of these, whatever dates its writer sets.
+    return f"{identity} {status.st_size} {status.st_mtime_ns} {status.st_ctime_ns}"
 
 
 def _describe_entry(entry: os.DirEntry[str]) -> tuple[str, bool, bool, bool]:

@@ -6,18 +6,13 @@ What the fields of a message say of the values in it: their units, and what a si
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterator, Mapping
 from functools import lru_cache
-from typing import TYPE_CHECKING, Literal
+from typing import Literal
 
 from archgen.diagnostics import count_slips, find_closest
 from archgen.frozen import NamedTuple, dataclass, field
 from archgen.model.ros_distro import PAST_DISTROS, is_ros_1
-
-if TYPE_CHECKING:
-    from archgen.model.architecture import Architecture
-    from archgen.model.message_types import ConceptualType
-    from archgen.model.node import Topic
 
 KNOWN_DISTROS = ("jazzy", "humble", "kilted", "lyrical", "rolling", "noetic")
 """The distributions whose interfaces ship with archgen. The order counts: for a project without a distribution, the
@@ -298,30 +293,3 @@ def _list_fields(interfaces: Interfaces, message: str | None) -> Iterator[Interf
                 yield each
                 if "/" in each.type:
                     waiting.append(each.type)
-
-
-def collect_messages(
-    architecture: Architecture, types: Iterable[ConceptualType], topics: Iterable[Topic]
-) -> dict[str, tuple[str, ...]]:
-    """Return the messages that these types and topics use, and those inside of them, with the anchors of who uses each."""
-    users: dict[str, list[str]] = {}
-    for conceptual_type in types:
-        if conceptual_type.message:
-            users.setdefault(conceptual_type.message, []).append(f"type:{conceptual_type.name}")
-    for topic in topics:
-        for message in topic.messages:
-            users.setdefault(message, []).append(f"topic:{topic.name}")
-    # A message that another one contains is used where that one is. The list grows while it is walked.
-    pending = list(users)
-    for message in pending:
-        for part in list_fields(architecture, message):
-            if "/" in part.type and part.type not in users:
-                users[part.type] = list(users[message])
-                pending.append(part.type)
-    return {message: tuple(anchors) for message, anchors in users.items()}
-
-
-def list_fields(architecture: Architecture, message: str) -> tuple[InterfaceField, ...]:
-    """Return the fields of all parts of a message; none where its definition is not at hand."""
-    definition = architecture.interfaces.definitions.get(message)
-    return tuple(each for part in definition.parts for each in part) if definition else ()

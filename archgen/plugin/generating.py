@@ -24,7 +24,6 @@ from archgen.model.code_names import (
     make_snake_name,
 )
 from archgen.model.element_ids import make_id, spell_in_ascii
-from archgen.model.known_interfaces import collect_messages
 from archgen.model.path_resolver import title_from_id
 from archgen.views.generation.architecture_needs import find_name_clashes, find_text_fault
 from archgen.views.generation.component_records import (
@@ -50,6 +49,7 @@ from archgen.views.generation.program_parts import (
     record_ports,
     record_qos,
 )
+from archgen.views.lookup import collect_messages
 from archgen.views.records.record_sources import to_plain
 
 __all__ = ["AADL_KEYWORDS", "CPP_KEYWORDS", "NOT_GENERATED", "PORT_SECTIONS", "PYTHON_KEYWORDS", "GeneratedView"]

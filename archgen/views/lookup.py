@@ -4,6 +4,7 @@ them.
 
 from __future__ import annotations
 
+from collections import defaultdict
 from collections.abc import Iterable, Iterator, Mapping
 from typing import TypeVar
 
@@ -15,6 +16,7 @@ from archgen.model.component import Component, Connection, Input, Output
 from archgen.model.component_nesting import find_component, list_members, list_surrounding, list_written_connections
 from archgen.model.coordinate_frames import Frame
 from archgen.model.flow_graph import ComponentReach
+from archgen.model.known_interfaces import InterfaceField
 from archgen.model.message_types import ConceptualType
 from archgen.model.node import Endpoint, Node, Topic
 from archgen.model.port_media import ROS
@@ -310,3 +312,30 @@ def group_values(pairs: Iterable[tuple[str, T]]) -> dict[str, tuple[T, ...]]:
     """Collect values by key; keys and values keep the order in which they come."""
     lists_by_key = group_pairs(pairs)
     return {key: tuple(items) for key, items in lists_by_key.items()}
+
+
+def collect_messages(
+    architecture: Architecture, types: Iterable[ConceptualType], topics: Iterable[Topic]
+) -> dict[str, tuple[str, ...]]:
+    """Return the messages that these types and topics use, and those inside of them, with the anchors of who uses each."""
+    users: defaultdict[str, list[str]] = defaultdict(list)
+    for conceptual_type in types:
+        if conceptual_type.message:
+            users[conceptual_type.message].append(f"type:{conceptual_type.name}")
+    for topic in topics:
+        for message in topic.messages:
+            users[message].append(f"topic:{topic.name}")
+    # A message that another one contains is used where that one is. The list grows while it is walked.
+    pending = list(users)
+    for message in pending:
+        for part in list_fields(architecture, message):
+            if "/" in part.type and part.type not in users:
+                users[part.type] = list(users[message])
+                pending.append(part.type)
+    return {message: tuple(anchors) for message, anchors in users.items()}
+
+
+def list_fields(architecture: Architecture, message: str) -> tuple[InterfaceField, ...]:
+    """Return the fields of all parts of a message; none where its definition is not at hand."""
+    definition = architecture.interfaces.definitions.get(message)
+    return tuple(each for part in definition.parts for each in part) if definition else ()

@@ -6,9 +6,8 @@ from pathlib import Path
 
 import pytest
 
-from archgen.model.known_interfaces import collect_messages
 from archgen.pipeline import check_project
-from archgen.views.lookup import Lookup, make_lookup
+from archgen.views.lookup import Lookup, collect_messages, make_lookup
 from archgen.views.pages import message_pages
 from archgen.views.pages.message_pages import MessagePages
 from archgen.views.shapes import Facts, Inlines, Page, Paragraph, Table

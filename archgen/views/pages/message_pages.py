@@ -8,14 +8,14 @@ from typing import TypeVar
 from archgen.diagnostics import order_naturally
 from archgen.frozen import replace
 from archgen.model.component import Output
-from archgen.model.known_interfaces import Interface, InterfaceField, collect_messages, list_fields
+from archgen.model.known_interfaces import Interface, InterfaceField
 from archgen.model.message_types import ConceptualType, flow_of
 from archgen.model.node import Topic
 from archgen.views import inline_text
 from archgen.views.agreement.message_fields import field_type_run
 from archgen.views.element_references import message_link
 from archgen.views.elements.type_fields import make_constant_table
-from archgen.views.lookup import Lookup, group_values
+from archgen.views.lookup import Lookup, collect_messages, group_values, list_fields
 from archgen.views.shapes import (
     Block,
     Column,

@@ -8,7 +8,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Iterable, Mapping
 from fractions import Fraction
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from archgen.frozen import dataclass
 from archgen.model.component import Component, Output
@@ -23,9 +23,7 @@ from archgen.model.port_media import ROS, is_physical, name_on_medium, word_of_m
 from archgen.model.promise import describe_deprecation, format_range
 from archgen.model.quantity import Quantity
 from archgen.model.step_connections import ConnectedStep
-
-if TYPE_CHECKING:  # generators use what is above it
-    from archgen.views.lookup import Lookup
+from archgen.views.lookup import Lookup
 
 
 def drop_unknown(data: dict[str, object]) -> dict[str, object]:
@@ -106,7 +104,7 @@ def _record_field(field: DataField, part: str, ros_fields: Mapping[tuple[str, st
     return RecordedField(field.name, field.type, field.default, field.unit, field.comment, ros_type)
 
 
-Source = Callable[[Any, "Lookup"], object]
+Source = Callable[[Any, Lookup], object]
 """Gives what stands at a key of an element, before it is written in the form of its type."""
 
 

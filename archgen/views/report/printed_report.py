@@ -11,12 +11,12 @@ import itertools
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 
 from archgen.frozen import replace
-from archgen.model.known_interfaces import Interface, InterfaceConstant, InterfaceField, collect_messages
+from archgen.model.known_interfaces import Interface, InterfaceConstant, InterfaceField
 from archgen.views import inline_text
 from archgen.views.agreement.message_fields import field_type_run
 from archgen.views.elements.functional_level import list_group_facts
 from archgen.views.graphs.element_boxes import name_in_place
-from archgen.views.lookup import Lookup
+from archgen.views.lookup import Lookup, collect_messages
 from archgen.views.pages import report_outline
 from archgen.views.pages.component_pages import list_group_parts
 from archgen.views.pages.context_pages import shown_topics

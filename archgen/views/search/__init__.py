@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 
-from archgen.model.known_interfaces import Interface, collect_messages
+from archgen.model.known_interfaces import Interface
 from archgen.model.port_media import key_of_channel, name_medium, name_on_medium
 from archgen.views import inline_text
 from archgen.views.elements.frame_users import list_shown_frames, name_writer
 from archgen.views.elements.port_tables import list_text_remarks
-from archgen.views.lookup import Lookup
+from archgen.views.lookup import Lookup, collect_messages
 from archgen.views.search import functional_entries, search_entry
 from archgen.views.search.functional_entries import list_owner_titles, make_owner_keys, make_property_keys
 from archgen.views.search.search_entry import SearchEntry, join_entry_parts, to_plain_text
