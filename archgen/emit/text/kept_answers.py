@@ -72,7 +72,7 @@ def _digest_view(view: Any) -> bytes:  # noqa: ANN401 - data of any shape
     return _digest_plain(digest_lists(view))
 
 
-def _digest_plain(value: object) -> bytes:
+def _digest_plain(value: Any) -> bytes:  # noqa: ANN401
     return hashlib.sha256(marshal.dumps(value, 0)).digest()
 
 
