@@ -28,11 +28,11 @@ def _append(path: Path, text: str) -> None:
     path.write_text(path.read_text(encoding="utf-8") + text, encoding="utf-8")
 
 
-def _change_model(old: str, new: str) -> Callable[[Path], None]:
-    return lambda folder: (folder / "archgen.yaml").write_text(ROBOT.replace(old, new), encoding="utf-8") and None
+def _change_model(old: str, new: str) -> Callable[[Path], object]:
+    return lambda folder: (folder / "archgen.yaml").write_text(ROBOT.replace(old, new), encoding="utf-8")
 
 
-CHANGES: dict[str, Callable[[Path], None]] = {
+CHANGES: dict[str, Callable[[Path], object]] = {
     "nothing": lambda _folder: None,
     "a file is deleted": lambda folder: (folder / PACKAGE / "package.xml").unlink(),
     "a file is edited by hand": lambda folder: _append(folder / PACKAGE / "setup.py", "# mine\n"),
