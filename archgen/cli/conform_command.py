@@ -240,13 +240,14 @@ def _read_options(
     arguments: tuple[str, ...],
     variables: tuple[str, ...],
 ) -> ObservationOptions:
-    from archgen.importers.robot_observation import ObservationOptions
+    from archgen.importers.robot_observation import ObservationOptions, list_designed_starts
 
     return ObservationOptions(
         command_support.split_words(arguments, ":=", "argument", "--argument NAME:=VALUE"),
         command_support.split_words(variables, "=", "variable of the environment", "--env NAME=VALUE"),
         launch_files or checked_project.architecture.conform.launch,
         checked_project.architecture.distro or "",
+        tuple(list_designed_starts(checked_project.architecture)),
     )
 
 
@@ -280,6 +281,7 @@ def _describe_comparison(comparison: RobotComparison) -> Iterator[str]:
     parts += [f"{comparison.untold} cannot be told"] if comparison.untold else []
     parts += [f"{comparison.unknown} of its names unknown"]
     parts += [f"{comparison.compared_parameters} parameters compared"] if comparison.compared_parameters else []
+    parts += ["names, remaps and parameters as the design starts them"] if robot.has_designed_starts else []
     yield f"{robot.origin} ({robot.kind}): {'; '.join(parts)}"
     if comparison.early_nodes:
         yield f"  planned, and running already: {join_first(comparison.early_nodes)}"

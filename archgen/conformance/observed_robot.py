@@ -91,6 +91,8 @@ class ObservedRobot:
     """Whether the parameters of a node are all that it declares, so that one which is missing is not declared."""
     unnamed_nodes: int = 0
     """How many nodes it has besides, of which only running their programs tells the names."""
+    has_designed_starts: bool = False
+    """Whether its programs were taken as the design starts them: it tells nothing of names, remaps and parameters that a start gives."""
     unread: tuple[str, ...] = ()
     """What could not be read of it, a sentence each with the place."""
 

@@ -251,7 +251,10 @@ class _Comparer:
 
     def _report_missing(self, node: Node) -> Diagnostic:
         message, help_line = f"`{node.full_name}` does not run", "start it, or write `status: planned`"
-        if self._robot.kind == "workspace":
+        if self._robot.has_designed_starts:
+            message = f"there is no program of `{node.full_name}`"
+            help_line = "correct `package` and `executable`, or write `status: planned`"
+        elif self._robot.kind == "workspace":
             message = f"no launch file starts `{node.full_name}`"
             help_line = "have one start it, or write `status: planned`"
         elif node.host and not self._part.hosts:
@@ -310,7 +313,8 @@ class _Comparer:
         # What stands in files of other packages counts for more than what components declare, and is not known.
         has_unknown_files = any(map(is_filled_in, node.parameter_files))
         for name, designed in find_effective_parameters(self._architecture, node).items():
-            if has_unknown_files and designed.origin in {"ros", "component"}:
+            is_given_at_start = self._robot.has_designed_starts and designed.origin != "component"
+            if is_given_at_start or (has_unknown_files and designed.origin in {"ros", "component"}):
                 continue
             if not designed.is_known or is_ros_parameter(name, ros_1=ros_1) or _has_substitution(designed.value):
                 continue

@@ -26,7 +26,7 @@ from archgen.importers.foreign_import import (
     ReadRecordings,
     RecordingRefusedError,
 )
-from archgen.importers.robot_observation import ObservationOptions
+from archgen.importers.robot_observation import DesignedStart, ObservationOptions
 from archgen.importers.work_budget import CHARACTERS_IN_A_STEP, STEPS_OF_A_KEPT_VALUE, WorkBudget
 from archgen.model.code_names import make_camel_name
 from archgen.model.element_ids import MAX_ID_LENGTH, is_id, make_id, make_unique_id, spell_in_ascii
@@ -43,7 +43,7 @@ from archgen.syntax.yaml_writer import FlowMapping, needs_quotes
 __all__ = ["ARCHIVE_DAMAGE", "CHARACTERS_IN_A_STEP", "MAX_BYTES", "MAX_ID_LENGTH", "MAX_OFFICE_BYTES", "NO_SPAN"]
 __all__ += ["STEPS_OF_A_KEPT_VALUE", "ZIP_BEGINNING", "FlowMapping", "ForeignFileError", "ForeignImport", "ImportNote"]
 __all__ += ["ImportedRequirements", "ImportedTables", "MappingNode", "ObjectAccount", "ObservationOptions"]
-__all__ += ["ObservedEndpoint", "ObservedNode", "ObservedRobot", "ReadRecordings", "RecordedTopic"]
+__all__ += ["DesignedStart", "ObservedEndpoint", "ObservedNode", "ObservedRobot", "ReadRecordings", "RecordedTopic"]
 __all__ += ["RecordingRefusedError", "ScalarNode", "SequenceNode", "SourceTexts", "Span", "WorkBudget", "XmlElement"]
 __all__ += ["XmlEvents", "XmlProblem", "YamlNode", "explain_encoding", "explain_syntax", "find_closest"]
 __all__ += ["find_program_name", "index_shipped_programs", "is_id", "limit_unpacked", "link_slices"]

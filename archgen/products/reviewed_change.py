@@ -24,7 +24,7 @@ from archgen.git.object_reader import GitObjects
 from archgen.git.project_revision import differs_from_head
 from archgen.git.repository_lookup import look_up_commit
 from archgen.importers.foreign_import import ForeignFileError
-from archgen.importers.robot_observation import ObservationOptions, observe_robot
+from archgen.importers.robot_observation import ObservationOptions, list_designed_starts, observe_robot
 from archgen.pipeline import CheckedProject, VersionCache
 from archgen.products.check_findings import compare_findings
 from archgen.products.compared_versions import (
@@ -100,6 +100,7 @@ def _find_differences(
 ) -> tuple[Diagnostic, ...]:
     # Both versions are called the same, so that their findings can be.
     # A branch may put anything in the place of a workspace, such as a recording that unpacks to fill the memory.
+    options = replace(options, starts=tuple(list_designed_starts(checked_project.architecture)))
     robot = replace(observe_robot(workspace, checked_project.root, options, ("workspace",)), origin=text)
     return hold_against_robots(checked_project, [robot], ComparedPart()).reported.findings
 

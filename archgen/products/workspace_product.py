@@ -26,9 +26,14 @@ from archgen.products.backend_choice import choose_backends, make_generation_con
 from archgen.products.output_options import OutputOptions, refuse_leaving_links
 from archgen.products.report_cache import cache_folder
 from archgen.products.trusted_backends import refuse_untrusted_pass
-from archgen.views.generation import find_view_maker, make_generation_views
+from archgen.views.generation import find_view_maker, is_shipped_view, make_generation_views
 from archgen.views.generation.architecture_needs import find_unmet_needs
-from archgen.views.generation.generation_context import NOT_GENERATED, GenerationContext, tell_left_out
+from archgen.views.generation.generation_context import (
+    NOT_GENERATED,
+    GenerationContext,
+    give_model_paths,
+    tell_left_out,
+)
 from archgen.views.generation.model_paths import index_model_paths, write_model_paths
 
 
@@ -222,9 +227,10 @@ def _render_files(
     unmet_needs = tuple(find_unmet_needs(context, backend.needs))
     if unmet_needs:
         return None, unmet_needs
-    views, findings = _make_views(checked_project, options, backend, context)
     paths = index_model_paths(context.architecture)
-    views = {name: write_model_paths(view, paths) for name, view in views.items()}
+    with give_model_paths(paths):
+        views, findings = _make_views(checked_project, options, backend, context)
+    views = {name: view if is_shipped_view(name) else write_model_paths(view, paths) for name, view in views.items()}
     places = {path: place for place, path in paths.items()}
     limits = text.DEFAULT_LIMITS.scale_to(context.element_count)
     store = open_answer_store(cache_folder())

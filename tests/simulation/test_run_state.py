@@ -27,9 +27,7 @@ class _Counted(tuple[PlannedCallback, ...]):
 def _count_callbacks(reader_count: int) -> int:
     names = [f"r{number}" for number in range(reader_count)]
     plan = build_plan(
-        system(
-            [timed("cam", 100, 1), *(event(name, 1, "cam") for name in names)], [arc("cam", name) for name in names]
-        )
+        system([timed("cam", 100, 1), *(event(name, 1, "cam") for name in names)], [arc("cam", name) for name in names])
     )
     _Counted.count = 0
     assert WireStates(replace(plan, callbacks=_Counted(plan.callbacks)), ()).keeps_order == [True] * reader_count

@@ -20,7 +20,7 @@ from archgen.emit.backend_manifests import Backend
 from archgen.emit.file_tree import FileTree, list_files_below, make_file_tree
 from archgen.emit.manifest_parsing import BACKEND_ERROR_RULE
 from archgen.emit.safe_names import assign_safe_paths, explain_long_path
-from archgen.emit.text.kept_answers import NO_ANSWERS, keep_answer, load_answer, make_answer_key
+from archgen.emit.text.kept_answers import NO_ANSWERS, encode_texts, keep_files, load_files, make_answer_key
 from archgen.emit.text.template_limits import TemplateLimits
 from archgen.emit.workspace.disk_files import GeneratedFile, find_path_problems
 from archgen.resources import worker_environment
@@ -41,9 +41,8 @@ def render_backend(
     answer = _render_files(backend, views, limits)
     if "error" in answer:
         return None, (_make_diagnostic(backend, answer),)
-    rendered = [(str(path), str(text)) for path, text, *_ in answer["files"]]
     try:
-        files = [*_read_assets(backend), *((path, text.encode()) for path, text in rendered)]
+        files = [*_read_assets(backend), *((path, data) for path, data, *_ in answer["files"])]
     except (_AssetError, OSError) as error:
         return None, (_make_diagnostic(backend, {"error": str(error), "template": None, "line": None}),)
     paths = assign_safe_paths(path for path, _ in files)
@@ -70,11 +69,10 @@ def render_workspace(
         files = [GeneratedFile(path.removeprefix("assets/"), data) for path, data in _read_assets(backend)]
     except (_AssetError, OSError) as error:
         return (), (_make_diagnostic(backend, {"error": str(error), "template": None, "line": None}),)
-    for path, text, position, expected_words, offered_words, place in answer["files"]:
+    for path, data, digest, position, expected_words, offered_words, place in answer["files"]:
         entry = backend.files[position]
         words = (tuple(expected_words), tuple(offered_words))
-        file = GeneratedFile(path, text.encode(), entry.executable, entry.once, *words, places.get(place, place))
-        files.append(file)
+        files.append(GeneratedFile(path, data, entry.executable, entry.once, *words, places.get(place, place), digest))
     problems = tuple(
         _make_diagnostic(backend, {"error": problem, "template": None, "line": None})
         for problem in find_path_problems(files)
@@ -85,7 +83,7 @@ def render_workspace(
 def _render_files(
     backend: Backend, views: Mapping[str, object], limits: TemplateLimits, answer_store: FileStore = NO_ANSWERS
 ) -> Mapping[str, Any]:
-    """Render all files in a process of their own, and return its answer, or one to the same request that is kept."""
+    """Render all files in a process of their own, and return them, or those of the same request that are kept, or an `error`."""
     templates = backend.folder / "templates"
     content: dict[str, Any] = {
         "templates": str(templates),
@@ -97,11 +95,14 @@ def _render_files(
         "is_workspace": backend.makes == "workspace",
     }
     key = make_answer_key(content, templates) if answer_store.folder is not None else ""
-    answer = load_answer(answer_store, key)
-    if answer is None:
+    files = load_files(answer_store, key)
+    if files is None:
         answer = _run_worker(_pack_request(content), limits)
-        keep_answer(answer_store, key, answer)
-    return answer
+        if "files" not in answer:
+            return answer
+        files = encode_texts(answer["files"])
+        keep_files(answer_store, key, files)
+    return {"files": files}
 
 
 def _pack_request(content: Mapping[str, Any]) -> bytes:

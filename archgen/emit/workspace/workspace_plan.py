@@ -174,14 +174,16 @@ class _Planner:
     removals: list[str] = field(default_factory=list)
     vanished: list[str] = field(default_factory=list)
     entries: dict[str, RecordedFile] = field(default_factory=dict)
-    known_digests: dict[str, set[str]] = field(default_factory=lambda: defaultdict(set))
     _outlived: dict[str, RecordedFile] = field(default_factory=dict)
     """Files of the user's own that nothing needs any more."""
 
-    def __post_init__(self) -> None:
+    @cached_property
+    def _known_digests(self) -> defaultdict[str, set[str]]:
+        """What archgen wrote, by folded path: where case is ignored, `Node.py` is what stands at `node.py`."""
+        known_digests = defaultdict[str, set[str]](set)
         for path, entry in self.old_record.files.items():
-            # By folded path: where case is ignored, `Node.py` is what stands at `node.py`.
-            self.known_digests[fold_file_path(path)] |= set() if entry.is_own else entry.digests
+            known_digests[fold_file_path(path)] |= set() if entry.is_own else entry.digests
+        return known_digests
 
     def plan_unwanted(self, path: str, entry: RecordedFile) -> None:
         """Plan what happens to a file that this run does not make."""
@@ -207,8 +209,8 @@ class _Planner:
     def plan_wanted(self, file: GeneratedFile) -> None:
         """Plan what happens at the path of a file that this run makes."""
         entry = self.old_record.files.get(file.path)
-        on_disk = self._ignore_leaving(self.disk.read(file.path), file.path)
-        digest = hashlib.sha256(file.data).hexdigest()
+        digest = file.digest
+        on_disk = self._ignore_leaving(self.disk.read(file.path, file.data, digest), file.path)
         if on_disk.obstacle:
             self._keep(file, entry, "blocked", f"`{on_disk.obstacle_path}` {on_disk.obstacle}")
         elif not on_disk.exists:
@@ -220,7 +222,7 @@ class _Planner:
             self._keep_own(file, entry, digest, on_disk)
         elif on_disk.has_digest({digest}):
             self._keep_same(file, entry, digest, on_disk)
-        elif on_disk.has_digest(self.known_digests[fold_file_path(file.path)]) or (
+        elif on_disk.has_digest(self._known_digests[fold_file_path(file.path)]) or (
             entry and file.path in self.choices.overwritten
         ):
             self._write(file, entry, digest, on_disk, "changed")
@@ -296,15 +298,12 @@ class _Planner:
     def _keep_own(
         self, file: GeneratedFile, entry: RecordedFile | None, digest: str, on_disk: DiskFile, *, is_empty: bool = False
     ) -> None:
-        own = self._record(file, entry, digest)
-        if entry:
-            own = replace(own, digests=entry.digests)
         report = CodeReport()
         if file.once:
             # What is empty was written for nothing.
             meanings = entry.meanings if entry and not is_empty else {}
             report = self._judge_own(file, on_disk.digest or "", meanings, entry.meanings if entry else {})
-        self.entries[file.path] = replace(own, once=file.once, kept=not file.once, meanings=report.meanings)
+        self.entries[file.path] = self._record(file, entry, digest, report.meanings, is_own=True)
         findings = report.findings
         if is_empty and any(not each.is_note for each in findings):
             message = (
@@ -338,12 +337,19 @@ class _Planner:
         self.steps.append(FileStep(file.path, verb, note))
 
     def _record(
-        self, file: GeneratedFile, entry: RecordedFile | None, digest: str, meanings: Mapping[str, str] = {}
+        self,
+        file: GeneratedFile,
+        entry: RecordedFile | None,
+        digest: str,
+        meanings: Mapping[str, str],
+        *,
+        is_own: bool = False,
     ) -> RecordedFile:
         runs = (entry.runs if entry else frozenset[str]()) | {self.run}
         is_as_before = entry is not None and bool(entry.lines) and entry.digests == {digest}
         lines = "" if file.once else entry.lines if entry and is_as_before else join_digests(digest_lines(file.data))
-        return RecordedFile(frozenset({digest}), runs, file.executable, file.once, meanings=meanings, lines=lines)
+        digests = entry.digests if entry and is_own else frozenset({digest})
+        return RecordedFile(digests, runs, file.executable, file.once, is_own and not file.once, meanings, lines)
 
     def _list_helpers(self, path: str) -> Iterator[tuple[str, bytes]]:
         """Yield the Python files of the user's beside one of his own, and below, with their bytes."""
@@ -377,6 +383,15 @@ class _Planner:
         best = max(likeness, key=lambda each: (likeness[each], each), default="")
         return best if best and any(likeness[best]) else ""
 
+    def _find_heir(self, entry: RecordedFile) -> str:
+        """Return a file of the user's own that has ports of one now and had not before: its node is one with another now."""
+        for path, heir in self.entries.items():
+            old_heir = self.old_record.files.get(path)
+            old_elements = _list_elements(old_heir) if old_heir else set()
+            if heir.once and _list_elements(entry) & (_list_elements(heir) - old_elements):
+                return path
+        return ""
+
     def finish(self) -> WorkspacePlan:
         """Return the plan."""
         old_files = self.old_record.files
@@ -387,7 +402,10 @@ class _Planner:
                 words = f"{_OUTLIVED}; it may become {successor}, which is empty: move what you wrote there, and take this file away"
                 self.steps.append(FileStep(path, "yours", findings=(CodeFinding(words, 1, 1),)))
             else:
-                self.steps.append(FileStep(path, "yours", _OUTLIVED))
+                heir = self._find_heir(entry)
+                self.steps.append(
+                    FileStep(path, "yours", f"{_OUTLIVED}: {heir} has its ports now" if heir else _OUTLIVED)
+                )
         intended_files = dict(self.entries)
         for path in self.writes:
             if path in old_files:

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
+from typing import Any
 
 from archgen.plugin import replace
 from archgen.plugin.findings import NO_SPAN, Diagnostic, Label, Severity, Span, first_written_span
@@ -77,9 +78,9 @@ def make_view(context: GenerationContext, ros: int = 2) -> GeneratedView:
     endpoints = index_endpoints(context.architecture)
     for node in (node for nodes in programs.values() for node in nodes):
         findings += _tell_refused(context.architecture, endpoints.get(node.id, ()), refused_messages)
-    packages: dict[str, dict[str, object]] = {}
+    packages: dict[str, dict[str, Any]] = {}
     records: list[dict[str, object]] = []
-    made_nodes: list[Sequence[Node]] = []
+    names: dict[str, list[tuple[str, str, Span]]] = {}
     for (package_name, program_name), program_nodes in sorted(programs.items()):
         if is_cpp:
             bad_classes = find_bad_classes(
@@ -93,46 +94,41 @@ def make_view(context: GenerationContext, ros: int = 2) -> GeneratedView:
         )
         if is_cpp:
             complete_cpp_program(context.architecture, record, program_nodes)
-        made_nodes.append(program_nodes)
+        first = program_nodes[0]
+        names.setdefault(package_name, []).append((str(record["class_name"]), first.id, first.at))
         records.append(record)
         findings += program_findings
         findings += find_program_differences(program_name, program_nodes, endpoints)
-        package = packages.setdefault(
-            package_name,
-            {
-                **record_package_facts(context, program_nodes[0].owner),
+        if package_name not in packages:
+            packages[package_name] = {
+                **record_package_facts(context, first.owner),
                 "name": package_name,
                 "language": language,
                 "programs": [],
-                "dependencies": [],
-                "rosdep_keys": [],
-                "place": write_place(_find_place(context.architecture, program_nodes[0])),
-            },
-        )
-        package["programs"].append(record)  # type: ignore[attr-defined]
+                "place": write_place(_find_place(context.architecture, first)),
+            }
+        packages[package_name]["programs"].append(record)
     used_packages = {name for each in records for name in each["message_packages"]}  # type: ignore[attr-defined]
     findings += tell_unlisted_packages(context.architecture, used_packages)
     keys = RosdepKeys(context.architecture)
     findings += keys.findings
     for package in packages.values():
-        used = {name for each in package["programs"] for name in each["message_packages"]}  # type: ignore[attr-defined]
-        package["dependencies"] = sorted(used)
-        package["rosdep_keys"] = keys.list_keys(used)
-        if is_cpp:
-            of_messages = set(_MESSAGE_LIBRARIES) - used if context.options.get("stand_ins") else ()
-            package["libraries"] = list_cpp_libraries(package["programs"], of_messages)  # type: ignore[arg-type]
-        package["has_actions"] = any(
-            each["action_servers"] or each["action_clients"]
-            for each in package["programs"]  # type: ignore[attr-defined]
-        )
-    names = [
-        (str(each["class_name"]), program_nodes[0].id, program_nodes[0].at)
-        for each, program_nodes in zip(records, made_nodes, strict=True)
-    ]
-    for package_name in packages:
-        in_package = [name for name, each in zip(names, records, strict=True) if each["package"] == package_name]
+        _complete_package(context, package, keys, is_cpp=is_cpp)
+    for in_package in names.values():
         findings += find_name_clashes(in_package, "class")
     return GeneratedView({"packages": list(packages.values()), "programs": records}, tuple(findings))
+
+
+def _complete_package(context: GenerationContext, package: dict[str, Any], keys: RosdepKeys, *, is_cpp: bool) -> None:
+    """Tell a package what its programs need."""
+    programs = package["programs"]
+    used = {name for each in programs for name in each["message_packages"]}
+    package["dependencies"] = sorted(used)
+    package["rosdep_keys"] = keys.list_keys(used)
+    if is_cpp:
+        of_messages = set(_MESSAGE_LIBRARIES) - used if context.options.get("stand_ins") else ()
+        package["libraries"] = list_cpp_libraries(programs, of_messages)
+    package["has_actions"] = any(each["action_servers"] or each["action_clients"] for each in programs)
 
 
 def _tell_other_ros(ros: int) -> Diagnostic:
@@ -221,14 +217,15 @@ def _record_program(
     elif len(nodes) > 1:
         # What holds of the first of its nodes alone is not said of the program.
         title, description, place = title_from_id(program_name), "", program_name
-    class_name = make_camel_name(_name_module(program_name))
+    module = _name_module(program_name)
+    class_name = make_camel_name(module)
     if {class_name, f"{class_name}Node"} & IMPORTED_CLASSES:
         class_name += "Program"
     import_messages = import_in_ros_1 if is_ros_1(architecture.distro) else import_in_ros_2
     record: dict[str, object] = {
         "package": package_name,
         "executable": program_name,
-        "module": _name_module(program_name),
+        "module": module,
         "class_name": class_name,
         "component_type": component_type.id if component_type else "",
         "title": title,

@@ -58,6 +58,11 @@ def find_view_maker(name: str) -> ViewMaker | None:
     return CORE_VIEWS.get(name) or _list_shipped_makers().get(name) or _list_foreign_makers().get(name)
 
 
+def is_shipped_view(name: str) -> bool:
+    """Whether a view for generators is archgen's own: in all of them places are as `write_place` returns them."""
+    return name in CORE_VIEWS or name in _list_shipped_makers()
+
+
 def list_view_names(wanted: Collection[str]) -> tuple[str, ...]:
     """Return the names of the core's views; where a wanted one is none of these, of those of plug-ins that ship, too, and where
     one is still missing, of those of others.

@@ -4,7 +4,9 @@ from __future__ import annotations
 
 import hashlib
 import re
-from collections.abc import Callable, Collection, Mapping
+from collections.abc import Callable, Collection, Iterator, Mapping
+from contextlib import contextmanager
+from contextvars import ContextVar
 from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
@@ -122,9 +124,28 @@ class GenerationContext:
         return {"1": 1, "2": 2}.get(self.options.get("ros", ""), 1 if is_ros_1(self.architecture.distro) else 2)
 
 
+_MODEL_PATHS: ContextVar[Mapping[str, str] | None] = ContextVar("model_paths", default=None)
+
+
+@contextmanager
+def give_model_paths(paths: Mapping[str, str]) -> Iterator[None]:
+    """Let `write_place` return paths in the model, which are given by where their elements are written."""
+    token = _MODEL_PATHS.set(paths)
+    try:
+        yield
+    finally:
+        _MODEL_PATHS.reset(token)
+
+
 def write_place(span: Span) -> str:
-    """Return where an element is written, as `place` of what is generated for it; empty where it is written nowhere."""
-    return "" if span == NO_SPAN else str(span)
+    """Return where an element is written, as `place` of what is generated for it; empty where it is written nowhere.
+
+    In a workspace it is the element's path in the model, or the file of what has none there.
+    """
+    if span == NO_SPAN:
+        return ""
+    paths, place = _MODEL_PATHS.get(), str(span)
+    return place if paths is None else paths.get(place) or span.file
 
 
 def tell_left_out(message: str, span: Span, *, element: str | None = None, help_line: str | None = None) -> Diagnostic:

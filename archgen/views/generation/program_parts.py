@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Collection, Iterable, Mapping, Sequence
+from typing import Any
 
 from archgen.analyses.topic_sources import find_endpoint_span
 from archgen.bringup.program_names import ProgramPorts, find_common_message, name_program
@@ -55,10 +56,9 @@ def record_ports(
         if message.rpartition("/")[2] in PYTHON_KEYWORDS:
             findings.append(_tell_bad_message(architecture, port_endpoints[0]))
             continue
-        sections[PORT_SECTIONS[use, flow]].append(
-            _record_port(architecture, key, own_names[use, flow, key], port_endpoints, shared_name)
-            | {"meaning": _write_meaning(architecture, port_endpoints, is_shared=len(nodes) > 1)}
-        )
+        record = _record_port(architecture, key, own_names[use, flow, key], port_endpoints, shared_name)
+        record["meaning"] = _write_meaning(architecture, port_endpoints[0], record, is_shared=len(nodes) > 1)
+        sections[PORT_SECTIONS[use, flow]].append(record)
     return sections, findings
 
 
@@ -121,14 +121,13 @@ def _record_port(
     }
 
 
-def _write_meaning(architecture: Architecture, port_endpoints: Sequence[Endpoint], *, is_shared: bool) -> str:
+def _write_meaning(architecture: Architecture, first: Endpoint, record: Mapping[str, Any], *, is_shared: bool) -> str:
     """Return what a port's name in code stands for: `base.guard.arms<arms.left.state:sensor_msgs/msg/JointState`.
 
     A program that instances share has what their type says: each of them hears another one.
     """
-    first = port_endpoints[0]
-    envelope = record_envelope(architecture, port_endpoints)
-    message = str(envelope["payload"]) if envelope else first.message or ""
+    envelope = record["envelope"]
+    message = envelope["payload"] if envelope else first.message or ""
     component = architecture.components.get(first.component or "")
     element = first.port or first.label
     if is_shared and component and component.component_type and first.port:

@@ -132,8 +132,29 @@ def test_what_is_no_plain_data_is_not_kept(backend: Backend, store: FileStore, r
     assert len(runs) == 2
 
 
+def make_key(view: object, folder: Path) -> str:
+    return make_answer_key({"data": {"record": view}}, folder)
+
+
 def test_equal_data_has_one_key_whatever_shares_what(tmp_path: Path) -> None:
-    shared: list[object] = ["robot_"[:-1], 1.5, None]
-    first = make_answer_key({"a": shared, "b": shared}, tmp_path)
-    second = make_answer_key({"a": ["robot", 1.5, None], "b": ["robot", 1.5, None]}, tmp_path)
-    assert first == second != make_answer_key({"a": shared, "b": ["robot", 1.25, None]}, tmp_path)
+    shared: dict[str, object] = {"name": "robot_"[:-1], "rate": 1.5, "none": None}
+    other = {"name": "robot", "rate": 1.5, "none": None}
+    first = make_key({"programs": [shared], "packages": [{"programs": [shared]}]}, tmp_path)
+    assert first == make_key({"programs": [other], "packages": [{"programs": [other.copy()]}]}, tmp_path)
+    changed = {**other, "rate": 1.25}
+    assert first != make_key({"programs": [shared], "packages": [{"programs": [changed]}]}, tmp_path)
+    assert first != make_key({"programs": [changed], "packages": [{"programs": [shared]}]}, tmp_path)
+
+
+@pytest.mark.parametrize("value", [{"a": 1}, {"a": 2}, 3, "text", ["text"], ["text", "text"], [], [[1]], (1,), None])
+def test_what_is_called_like_a_list_of_the_view_counts_whole(tmp_path: Path, value: object) -> None:
+    others = [{"a": 1}, {"a": 2}, 3, "text", ["text"], ["text", "text"], [], [[1]], None]
+    keys = {make_key({"programs": [], "packages": [{"programs": each}]}, tmp_path) for each in others}
+    assert len(keys) == len(others)
+    key = make_key({"programs": [], "packages": [{"programs": value}]}, tmp_path)
+    assert (key in keys) == (value in others)
+
+
+def test_a_view_counts_by_its_name(tmp_path: Path) -> None:
+    names = ("record", "other")
+    assert len({make_answer_key({"data": {name: DATA}}, tmp_path) for name in names}) == len(names)

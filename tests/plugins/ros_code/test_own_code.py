@@ -460,6 +460,18 @@ def test_a_component_that_is_renamed_names_the_file_that_becomes_the_other(farm:
 CPP_HALT = change(ROBOT, ("outputs: {stop: Stop", "outputs: {halt: Stop"), ("guard.stop", "guard.halt"))
 
 
+JOINED = """
+nodes:
+  both: {implements: [base.wheels, base.guard], package: farm_base, executable: wheels}
+"""
+
+
+def test_own_code_of_a_node_that_becomes_one_with_another_is_told(farm: Path, backend: str) -> None:
+    said = generate(farm, backend, ROBOT + JOINED, 1)
+    assert any("base/guard.py: nothing that is generated needs it any more: " in line for line in said), said
+    assert any(line.endswith("wheels.py has its ports now") for line in said), said
+
+
 def test_words_of_cpp_are_told_with_their_line(tmp_path: Path) -> None:
     nodes = "nodes: {guard: {implements: guard, language: cpp, package: farm_cpp}}\n"
     robot = f"{ROBOT}{nodes}"

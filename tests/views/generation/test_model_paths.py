@@ -2,9 +2,15 @@
 
 from __future__ import annotations
 
+import json
 from pathlib import Path
 
+import pytest
+
+from archgen.installed_plugins import list_shipped_facts
 from archgen.pipeline import check_project
+from archgen.views.generation import CORE_VIEWS, find_view_maker, is_shipped_view
+from archgen.views.generation.generation_context import GenerationContext, give_model_paths
 from archgen.views.generation.model_paths import index_model_paths, write_model_paths
 
 PROJECT = """\
@@ -53,3 +59,22 @@ def test_places_become_paths_at_any_depth() -> None:
         "name": "p.yaml:4:3",
         "parts": [{"place": "other.yaml"}, {"place": "own", "deep": [{"place": ""}]}],
     }
+
+
+EXAMPLES = Path(__file__).parents[3] / "examples"
+
+
+@pytest.mark.parametrize("example", ["partners", "arm"])
+@pytest.mark.parametrize("name", sorted({*CORE_VIEWS, *(name for _, name, _ in list_shipped_facts("views"))}))
+def test_shipped_views_write_paths_themselves(name: str, example: str) -> None:
+    """A workspace does not go through their data again."""
+    context = GenerationContext(check_project(EXAMPLES / example).architecture)
+    paths = index_model_paths(context.architecture)
+    make_view = find_view_maker(name)
+    assert make_view is not None
+    assert is_shipped_view(name)
+    data = make_view(context).data
+    with give_model_paths(paths):
+        written = make_view(context).data
+    assert json.dumps(written, default=list) == json.dumps(write_model_paths(data, paths), default=list)
+    assert make_view(context).data == data

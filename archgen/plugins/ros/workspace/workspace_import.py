@@ -16,9 +16,11 @@ from typing import Any
 
 from archgen.plugin import dataclass
 from archgen.plugin.importing import (
+    DesignedStart,
     ForeignFileError,
     ForeignImport,
     MappingNode,
+    ObservationOptions,
     ScalarNode,
     SequenceNode,
     Span,
@@ -271,6 +273,7 @@ class JoinedWorkspace:
     account: ImportAccount
     distro: str
     is_distro_known: bool
+    is_without_launch: bool = False
 
 
 def read_workspace(  # noqa: PLR0913 - one for each option
@@ -288,7 +291,8 @@ def read_workspace(  # noqa: PLR0913 - one for each option
     out where one alone is included by no other. What only some of several start stands in variants; `none` takes each program.
     `group_by` is what makes a group of nodes: `folder` or `package` of their programs, `namespace`, or `codeowners`.
     """
-    workspace = join_workspace(files, arguments, environment, launch_files, distro)
+    options = ObservationOptions(arguments or {}, environment or {}, tuple(launch_files), distro)
+    workspace = join_workspace(files, options)
     account, launched = workspace.account, workspace.launched
     uses_library = any(each.library_type for each in workspace.knowledge)
     maker = SliceMaker(launched.run)
@@ -309,14 +313,9 @@ def read_workspace(  # noqa: PLR0913 - one for each option
     )
 
 
-def join_workspace(
-    files: Sequence[Path],
-    arguments: Mapping[str, str] | None,
-    environment: Mapping[str, str] | None,
-    launch_files: Sequence[str],
-    distro: str,
-) -> JoinedWorkspace:
+def join_workspace(files: Sequence[Path], options: ObservationOptions) -> JoinedWorkspace:
     """Read launch files, packages and sources, and find what each started node is. Raise ForeignFileError."""
+    launch_files, distro = options.launch_files, options.distro
     account = ImportAccount()
     for path in files:
         if not path.is_dir():
@@ -326,13 +325,13 @@ def join_workspace(
         raise ForeignFileError("there is no package.xml in it", Span.of_file(str(files[0])), _FOLDER_HELP)
     is_without_launch = tuple(launch_files) == (_NO_LAUNCH,)
     if is_without_launch:
-        launched = _start_programs(workspace, files)
+        launched = _start_programs(workspace, files, options.starts)
     elif not launch_files and not LaunchFiles(files).list_launch_files():
         help_line = f"with `--launch {_NO_LAUNCH}` each program is taken as if something started it once"
         raise ForeignFileError("there is no launch file in it", Span.of_file(str(files[0])), help_line)
     else:
         entries = [_find_entry(workspace, files, text) for text in launch_files]
-        launched = run_launch_files([*entries, *files] if entries else files, arguments, environment)
+        launched = run_launch_files([*entries, *files] if entries else files, options.arguments, options.environment)
         launched = launched if entries else _choose_entry(launched)
     nodes = launched.choose_nodes()
     is_ros_1 = all(package.manifest.is_ros_1 for package in workspace.packages.values())
@@ -353,18 +352,34 @@ def join_workspace(
         # Programs that are no nodes.
         knowledge = tuple(each for each in knowledge if each.program or each.library_type)
     reader.tell_unread()
-    return JoinedWorkspace(
-        workspace, launched, knowledge, account, known_distro, is_distro_known=bool(distro) or is_ros_1
-    )
+    is_distro_known = bool(distro) or is_ros_1
+    return JoinedWorkspace(workspace, launched, knowledge, account, known_distro, is_distro_known, is_without_launch)
 
 
-def _start_programs(workspace: WorkspaceFiles, folders: Sequence[Path]) -> LaunchedFiles:
-    """Return each program of a workspace as if something started it once, without a name, remaps and parameters."""
-    nodes = [
-        LaunchedNode("node", "program", Span.of_file(package.manifest_name), "", package=name, executable=program)
-        for name, package in workspace.packages.items()
-        for program in package.programs
-    ]
+def _start_programs(
+    workspace: WorkspaceFiles, folders: Sequence[Path], designed_starts: Sequence[DesignedStart]
+) -> LaunchedFiles:
+    """Return each program of a workspace as the design starts it, else as if something started it once, without a name, remaps and
+    parameters.
+    """
+    nodes = []
+    for name, package in workspace.packages.items():
+        place = Span.of_file(package.manifest_name)
+        starts = [start for start in designed_starts if start.package == name]
+        nodes += [
+            LaunchedNode(
+                *("loaded" if start.plugin else "node", "program", place, ""),
+                **start._asdict() | {"remaps": dict(start.remaps), "parameters": dict(start.parameters)},
+            )
+            for start in starts
+            if start.plugin or start.executable in package.programs
+        ]
+        known_programs = {start.executable for start in starts}
+        nodes += [
+            LaunchedNode("node", "program", place, "", package=name, executable=program)
+            for program in package.programs
+            if program not in known_programs
+        ]
     run = LaunchRun(LaunchFiles(folders), load_noted)
     return LaunchedFiles(run, {folders[0].resolve(): (nodes, Counter())})
 

@@ -31,7 +31,7 @@ def observe_workspace(path: Path, options: ObservationOptions) -> ObservedRobot 
     """Read a workspace; None for what is no folder with packages. Raise ForeignFileError."""
     if not path.is_dir() or next(path.rglob(MANIFEST), None) is None:
         return None
-    workspace = join_workspace([path], options.arguments, options.environment, options.launch_files, options.distro)
+    workspace = join_workspace([path], options)
     account, run = workspace.account, workspace.launched.run
     made = make_slices(SliceMaker(run), workspace.knowledge, workspace.files, account, workspace.distro)
     # A program of which no sources tell that it is a node is none that the graph of a robot would have.
@@ -53,6 +53,7 @@ def observe_workspace(path: Path, options: ObservationOptions) -> ObservedRobot 
         tuple(nodes.values()),
         endpoints,
         unnamed_nodes=len(nodes_of_ros) - len(named),
+        has_designed_starts=workspace.is_without_launch,
         unread=unread,
     )
 

@@ -170,3 +170,75 @@ def test_launch_files_are_given_what_starts_them(run: Run) -> None:
 def test_what_is_no_workspace_is_left_to_others(tmp_path: Path) -> None:
     assert observe_workspace(tmp_path, ObservationOptions()) is None
     assert observe_workspace(tmp_path / "x", ObservationOptions()) is None
+
+
+UNLAUNCHED = {
+    "src/drv/package.xml": "<package><name>drv</name><version>1.0.0</version><export><build_type>ament_python</build_type></export></package>",
+    "src/drv/setup.py": 'from setuptools import setup\nsetup(entry_points={"console_scripts": ["driver = drv.driver:main"]})',
+    "src/drv/drv/driver.py": """
+import rclpy
+from rclpy.node import Node
+from nav_msgs.msg import Odometry
+from std_srvs.srv import Trigger
+
+class Driver(Node):
+    def __init__(self):
+        super().__init__("driver")
+        self.declare_parameter("rate", 10)
+        self.odom = self.create_publisher(Odometry, "odom", 10)
+        self.server = self.create_service(Trigger, "~/reset", self.reset)
+
+def main():
+    rclpy.init()
+    rclpy.spin(Driver())
+""",
+    "robot/archgen.yaml": """
+archgen: 1
+project: {id: rover, title: Rover}
+ros: {distro: jazzy}
+component_types:
+  drive: {outputs: {odom: nav_msgs/msg/Odometry, reset: std_srvs/srv/Trigger}}
+groups:
+  base: {components: {one: {is: drive}, other: {is: drive}}}
+nodes:
+  left:
+    {implements: base.one, package: drv, executable: driver, name: left_driver, namespace: /left, parameters: {rate: 20},
+     remaps: {odom: /left/odometry}, publishes: {odom: odom}, serves: {reset: ~/reset}}
+  right:
+    {implements: base.other, package: drv, executable: driver, namespace: /right,
+     publishes: {odom: {topic: /o, own_name: odom}}, serves: {reset: {name: /clear, own_name: ~/reset}}}
+""",
+}
+"""A program that the design starts twice, with remaps that it writes in both ways."""
+
+
+@pytest.fixture
+def unlaunched(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    monkeypatch.chdir(tmp_path)
+    for name, text in UNLAUNCHED.items():
+        (tmp_path / name).parent.mkdir(parents=True, exist_ok=True)
+        (tmp_path / name).write_text(text, encoding="utf-8")
+    return tmp_path
+
+
+@pytest.mark.usefixtures("unlaunched")
+def test_without_launch_files_the_design_starts_the_programs(run: Run) -> None:
+    result = run("conform", "robot", "--against", "src", "--launch", "none")
+    assert "src (workspace): 2 of 2 nodes, 4 of 4 endpoints seen" in result.out
+    assert "names, remaps and parameters as the design starts them" in result.out
+    assert (result.status, "no differences" in result.out) == (0, True)
+    plant("drv/drv/driver.py", '"odom"', '"odometry"')
+    assert (
+        "`/right/right` publishes `/right/odometry` in src, and `/o` in the design"
+        in run("conform", "robot", "--against", "src", "--launch", "none").out
+    )
+
+
+def test_without_launch_files_a_program_may_be_missing(unlaunched: Path, run: Run) -> None:
+    design = unlaunched / "robot" / "archgen.yaml"
+    design.write_text(
+        design.read_text().replace("executable: driver, namespace: /right", "executable: dirver, namespace: /right")
+    )
+    result = run("conform", "robot", "--against", "src", "--launch", "none")
+    assert "there is no program of `/right/right` in src" in result.out
+    assert "launch file" not in result.out
