@@ -21,7 +21,7 @@ from archgen.views.agreement.promise_rows import QOS_OFFERED
 from archgen.views.elements.functional_level import first_sentence
 from archgen.views.inline_text import count_noun
 from archgen.views.lookup import Lookup
-from archgen.views.pages.short_spreads import is_short, list_short_blocks
+from archgen.views.pages.short_spreads import MANY_PARTNERS, MAX_SHORT_ROWS, list_short_blocks
 from archgen.views.shapes import (
     Block,
     Bullets,
@@ -43,6 +43,8 @@ _MAX_MATRIX_PARTNERS = 10
 _MAX_ROWS = 44
 """More flows or components than these are told together: of one giver and taker, then of one partner."""
 _MAX_GRAVE_ROWS = 12
+_MAX_NAMES = 6
+"""So many partners are named in a cell; the others are counted."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -89,6 +91,8 @@ class SpreadWriter:
         interfaces = [terms for exchange in exchanges for terms in exchange.interfaces]
         self.given, self.taken = (_group_by(interfaces, side) for side in (0, 1))
         self.partners = [each for each in architecture.partners.values() if each.id in {*self.given, *self.taken}]
+        self.is_short = folds and len(self.partners) > MANY_PARTNERS
+        self.row_limit = MAX_SHORT_ROWS if self.is_short else _MAX_ROWS
         self.components: dict[str, list[Component]] = {}
         for component in architecture.components.values():
             for owner in component.owners if lookup.scope.shows_component(component.id) else ():
@@ -147,7 +151,7 @@ class SpreadWriter:
 
     def write_spread(self, partner: Partner) -> Section:
         """Write the section of a partner."""
-        shorts = list_short_blocks(self, partner) if is_short(self, partner) else None
+        shorts = list_short_blocks(self, partner) if self.is_short else None
         parts = (
             ("Gives", self._list_flow_blocks(partner, 0)),
             ("Takes", self._list_flow_blocks(partner, 1)),
@@ -165,7 +169,7 @@ class SpreadWriter:
         groups = {component.group: None for component in own}
         titles = [self.lookup.architecture.groups[each].title for each in groups]
         places = f" in {join_first(titles, 3)}" if titles else ""
-        names = f": {', '.join(component.title for component in own)}" if shorts and own else ""
+        names = f": {join_first([component.title for component in own], self.row_limit)}" if shorts and own else ""
         words = f"{lead}{count_noun(len(own), 'component')}{places}{names}."
         return Section(
             f"partner:{partner.id}",
@@ -178,15 +182,9 @@ class SpreadWriter:
         if not interfaces:
             yield Paragraph(inline_text.to_inlines(Text("Nothing.", muted=True)))
             return
-        rows = self.gather_rows(interfaces, side, by_output=True)
-        words = ""
-        if self.folds and len(rows) > _MAX_ROWS:
-            rows, words = self.gather_rows(interfaces, side, by_output=False), "of one giver and taker"
-        if self.folds and len(rows) > _MAX_ROWS:
-            rows, words = self._join_by_partner(rows), "of one partner"
+        rows, words = self.fold_rows(interfaces, side)
         if words:
-            sentence = f"{count_noun(len(interfaces), 'interface')}; those {words} are told together with the highest figures. The workbook has each."
-            yield Paragraph(inline_text.to_inlines(Text(sentence, muted=True)))
+            yield Paragraph(inline_text.to_inlines(Text(f"{words} The workbook has each.", muted=True)))
         columns = make_columns(
             ("What, by" if side == 0 else "What, for", 1.6),
             ("To" if side == 0 else "From", 1.6),
@@ -202,16 +200,29 @@ class SpreadWriter:
         cells = tuple(self.write_flow(row, side) for row in rows)
         yield drop_empty_columns(Table(anchor, f"{partner.title} {verb}", columns, cells, numbered=False, dense=True))
 
-    def gather_rows(self, interfaces: Iterable[InterfaceTerms], side: int, *, by_output: bool) -> list[_Flow]:
-        """Return a row for each output, or for each giver with its takers."""
+    def fold_rows(self, interfaces: Sequence[InterfaceTerms], side: int) -> tuple[list[_Flow], str]:
+        """Return the rows of what is given or taken, no more than there is room for, and what is told together."""
+        rows, words = self.gather_rows(interfaces, side), ""
+        for together in ("giver and taker", "partner") if self.folds else ():
+            if len(rows) > self.row_limit:
+                rows, words = self.gather_rows(interfaces, side, together), f"those of one {together}"
+        if self.folds and len(rows) > self.row_limit:
+            heaviest = set(sorted(range(len(rows)), key=lambda at: -len(rows[at].terms))[: self.row_limit - 1])
+            rest = [terms for at, row in enumerate(rows) if at not in heaviest for terms in row.terms]
+            rows = [*(rows[at] for at in sorted(heaviest)), self._make_flow(rest, 1 - side)]
+            words += f", and those of {len(rows[-1].partners)} partners with few,"
+        count = count_noun(len(interfaces), "interface")
+        return rows, f"{count}; {words} are told together with the highest figures." if words else ""
+
+    def gather_rows(self, interfaces: Iterable[InterfaceTerms], side: int, together: str = "output") -> list[_Flow]:
+        """Return a row for each output, for each giver with its takers, or for each partner."""
         rows: dict[tuple[str, ...], list[InterfaceTerms]] = {}
         for terms in interfaces:
-            givers, takers = components_at_ends(self.lookup.architecture, terms.interface)
-            if by_output:
-                rows.setdefault((terms.interface.key,), []).append(terms)
-            else:
-                others = tuple(each.id for each in (*givers, *takers))
-                rows.setdefault((terms.interface.pair[1 - side], *others), []).append(terms)
+            key: tuple[str, ...] = (terms.interface.key if together == "output" else terms.interface.pair[1 - side],)
+            if together == "giver and taker":
+                ends = components_at_ends(self.lookup.architecture, terms.interface)
+                key = (*key, *(each.id for components in ends for each in components))
+            rows.setdefault(key, []).append(terms)
         return [self._make_flow(each, 1 - side) for each in rows.values()]
 
     def _make_flow(self, terms: Sequence[InterfaceTerms], other: int) -> _Flow:
@@ -235,28 +246,9 @@ class SpreadWriter:
             if activities[flow.arc.target].node in takers and flow.arc.role == "data":
                 yield flow
 
-    @staticmethod
-    def _join_by_partner(rows: Iterable[_Flow]) -> list[_Flow]:
-        by_partner: dict[tuple[str, ...], list[_Flow]] = {}
-        for row in rows:
-            by_partner.setdefault(row.partners, []).append(row)
-        return [
-            _Flow(
-                partners,
-                tuple(dict.fromkeys(each for row in joined for each in row.givers)),
-                tuple(dict.fromkeys(each for row in joined for each in row.takers)),
-                tuple(dict.fromkeys(each for row in joined for each in row.types)),
-                tuple(dict.fromkeys(each for row in joined for each in row.topics)),
-                tuple(each for row in joined for each in row.terms),
-                tuple(each for row in joined for each in row.flows),
-            )
-            for partners, joined in by_partner.items()
-        ]
-
     def write_flow(self, row: _Flow, side: int) -> tuple[Inlines, ...]:
         """Return the cells of a row."""
-        architecture = self.lookup.architecture
-        partners = (inline_text.join_inlines(inline_text.partner_link(architecture, each) for each in row.partners),)
+        partners = (self._name_partners(row.partners),)
         what = join_first(list(row.types), 2)
         own, others = (row.givers, row.takers) if side == 0 else (row.takers, row.givers)
         own_lines = filter(None, ((Text(what, strong=True),), self._name_ends(own)))
@@ -276,6 +268,10 @@ class SpreadWriter:
             _list_open_words(row.terms),
         )
 
+    def _name_partners(self, partner_ids: Iterable[str]) -> Inlines:
+        links = [inline_text.partner_link(self.lookup.architecture, each) for each in partner_ids]
+        return inline_text.join_first(links, _MAX_NAMES // (2 if self.is_short else 1) if self.folds else len(links))
+
     def _name_ends(self, component_ids: Sequence[str]) -> Inlines:
         """Name the first of some components, and count the others."""
         if not component_ids:
@@ -284,10 +280,9 @@ class SpreadWriter:
         more = f" +{len(component_ids) - 1}" if len(component_ids) > 1 else ""
         return (Text(f"{title}{more}", muted=True),)
 
-    def list_deadline_blocks(self, partner: Partner) -> Iterator[Table]:
-        """Yield the deadlines that rest on a partner, with its share."""
+    def list_deadline_rows(self, partner: Partner) -> Iterator[tuple[Inlines, ...]]:
+        """Yield the deadlines that rest on a partner, with its share, the worst first."""
         architecture, timing = self.lookup.architecture, self.lookup.timing
-        rows = []
         for result in timing.chains if timing else ():
             if result.deadline is None or result.id not in architecture.chains:
                 continue
@@ -298,16 +293,17 @@ class SpreadWriter:
             ]
             if own:
                 share = TimingValue(sum_fractions(map(sum_known_parts, own)), result.bound.complete)
-                rows.append(
-                    (
-                        inline_text.to_inlines(Text(architecture.chains[result.id].title, ref=f"chain:{result.id}")),
-                        inline_text.to_inlines(f"{len(own)} of {len(result.terms)}"),
-                        timing_tables.duration_cell(share),
-                        timing_tables.duration_cell(result.bound),
-                        timing_tables.deadline_cell(result),
-                        chain_status.verdict_chip(result),
-                    )
+                yield (
+                    inline_text.to_inlines(Text(architecture.chains[result.id].title, ref=f"chain:{result.id}")),
+                    inline_text.to_inlines(f"{len(own)} of {len(result.terms)}"),
+                    timing_tables.duration_cell(share),
+                    timing_tables.duration_cell(result.bound),
+                    timing_tables.deadline_cell(result),
+                    chain_status.verdict_chip(result),
                 )
+
+    def list_deadline_blocks(self, partner: Partner) -> Iterator[Table]:
+        """Yield the table of the deadlines that rest on a partner."""
         columns = make_columns(
             ("Chain", 2.2),
             ("Its steps", 0.7, "right"),
@@ -316,15 +312,23 @@ class SpreadWriter:
             ("Deadline", 0.8, "right"),
             ("Verdict", 0.7),
         )
-        if rows:
+        if rows := list(self.list_deadline_rows(partner)):
             caption = f"Deadlines that rest on {partner.title}"
-            yield Table(f"table:deadlines/{partner.id}", caption, columns, tuple(rows), numbered=False, dense=True)
+            cells = tuple(self._cut_rows(rows, len(columns)))
+            yield Table(f"table:deadlines/{partner.id}", caption, columns, cells, numbered=False, dense=True)
+
+    def _cut_rows(self, rows: Sequence[tuple[Inlines, ...]], width: int) -> Iterator[tuple[Inlines, ...]]:
+        """Yield the first rows, which are the gravest, and a row that says how many more there are."""
+        limit = _MAX_GRAVE_ROWS // (3 if self.is_short else 1) if self.folds else len(rows)
+        yield from rows[:limit]
+        if len(rows) > limit:
+            yield (Text(f"{len(rows) - limit} more stand in the workbook", muted=True),), *(() for _ in range(1, width))
 
     def _list_component_blocks(self, partner: Partner) -> Iterator[Block]:
         own = self.components.get(partner.id, [])
         caption = f"Components of {partner.title}"
-        if self.folds and len(own) > _MAX_ROWS:
-            titles = join_first([component.title for component in own], _MAX_ROWS)
+        if self.folds and len(own) > self.row_limit:
+            titles = join_first([component.title for component in own], self.row_limit)
             yield Paragraph(inline_text.to_inlines(f"{titles}. Each has a data sheet."))
             return
         rows = tuple(
@@ -353,10 +357,7 @@ class SpreadWriter:
 
     def list_open_blocks(self, partner: Partner) -> Iterator[Block]:
         """Yield what a partner and others have still to settle."""
-        rows = list(self._list_grave_rows(partner))
-        if self.folds and len(rows) > _MAX_GRAVE_ROWS:
-            more = Text(f"{len(rows) - _MAX_GRAVE_ROWS} more stand in the workbook", muted=True)
-            rows = [*rows[:_MAX_GRAVE_ROWS], ((), (), (more,))]
+        rows = list(self._cut_rows(list(self._list_grave_rows(partner)), 3))
         for name, sides in (("owes", self.given), ("is owed", self.taken)):
             for term, interfaces in exchange_tables.group_open_terms(sides.get(partner.id, ())).items():
                 place = 1 if name == "owes" else 0
@@ -364,9 +365,7 @@ class SpreadWriter:
                 types = list(dict.fromkeys(each.interface.type or each.title for each in interfaces))
                 rows.append(
                     (
-                        inline_text.join_inlines(
-                            inline_text.partner_link(self.lookup.architecture, each) for each in others
-                        ),
+                        self._name_partners(others),
                         inline_text.to_inlines(Text(name, status="open" if name == "owes" else None)),
                         inline_text.to_inlines(f"{exchange_tables.shorten_name(term)} of {join_first(types, 4)}"),
                     )
@@ -387,7 +386,7 @@ class SpreadWriter:
                 for chip, sentence, _ in exchange_tables.list_grave_points(exchange):
                     shared.setdefault((chip, sentence), []).append(other)
         for (chip, sentence), partners in shared.items():
-            yield inline_text.owner_links(self.lookup.architecture, partners), chip, sentence
+            yield self._name_partners(partners), chip, sentence
 
     def list_impact_blocks(self, partner: Partner) -> Iterator[Paragraph]:
         """Say what rests on a partner: deadlines, requirements that nobody else serves, use cases, who reads from it."""

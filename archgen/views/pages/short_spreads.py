@@ -1,4 +1,4 @@
-"""Of many partners, those that have little in a short form, so that two share a page: one table, and sentences."""
+"""Of many partners each in a short form, on a page or less: one table, and sentences."""
 
 from __future__ import annotations
 
@@ -12,27 +12,21 @@ from archgen.views.shapes import Block, Inlines, Paragraph, Table, Text, drop_em
 if TYPE_CHECKING:
     from archgen.views.pages.partner_spreads import SpreadWriter
 
-_MANY_PARTNERS = 12
-"""With more of them, a page for each would make a document of partners alone."""
-_MAX_FLOWS, _MAX_COMPONENTS = 12, 6
-
-
-def is_short(writer: SpreadWriter, partner: Partner) -> bool:
-    """Return whether a partner shares a page with another one."""
-    flows = sum(len(sides.get(partner.id, ())) for sides in (writer.given, writer.taken))
-    is_small = flows <= _MAX_FLOWS and len(writer.components.get(partner.id, ())) <= _MAX_COMPONENTS
-    return writer.folds and is_small and len(writer.partners) > _MANY_PARTNERS
+MANY_PARTNERS = 12
+"""With more of them, a spread for each would make a document of partners alone."""
+MAX_SHORT_ROWS = 8
+_MAX_DEADLINES = 3
 
 
 def list_short_blocks(writer: SpreadWriter, partner: Partner) -> Iterator[Block]:
     """Yield what a partner gives and takes in one table, and in sentences what rests on it."""
-    cells = tuple(
-        ((Text(verb, strong=True),) if not at else (), *writer.write_flow(row, side))
-        for side, verb in enumerate(("Gives", "Takes"))
-        for at, row in enumerate(
-            writer.gather_rows((writer.given, writer.taken)[side].get(partner.id, ()), side, by_output=True)
-        )
-    )
+    cells, remarks = [], []
+    for side, verb in enumerate(("Gives", "Takes")):
+        rows, words = writer.fold_rows((writer.given, writer.taken)[side].get(partner.id, ()), side)
+        remarks += [f"{verb} {words}"] if words else []
+        cells += [
+            ((Text(verb, strong=True),) if not at else (), *writer.write_flow(row, side)) for at, row in enumerate(rows)
+        ]
     columns = make_columns(
         ("", 0.5),
         ("What, by or for", 1.6),
@@ -45,11 +39,15 @@ def list_short_blocks(writer: SpreadWriter, partner: Partner) -> Iterator[Block]
         ("Open", 0.7),
     )
     caption = f"What {partner.title} gives and takes"
-    yield drop_empty_columns(Table(f"table:flows/{partner.id}", caption, columns, cells, numbered=False, dense=True))
-    deadlines = [_phrase_deadline(row) for each in writer.list_deadline_blocks(partner) for row in each.rows]
+    yield drop_empty_columns(
+        Table(f"table:flows/{partner.id}", caption, columns, tuple(cells), numbered=False, dense=True)
+    )
+    if remarks:
+        yield Paragraph(inline_text.to_inlines(Text(" ".join((*remarks, "The workbook has each.")), muted=True)))
+    deadlines = list(map(_phrase_deadline, writer.list_deadline_rows(partner)))
     for paragraph in writer.list_impact_blocks(partner):
-        words = inline_text.join_inlines(deadlines, "; ")
-        yield Paragraph((*paragraph.inlines, *((Text(" Deadlines: "), *words, Text(".")) if words else ())))
+        shares = inline_text.join_first(deadlines, _MAX_DEADLINES, "; ")
+        yield Paragraph((*paragraph.inlines, *((Text(" Deadlines: "), *shares, Text(".")) if shares else ())))
 
 
 def _phrase_deadline(row: tuple[Inlines, ...]) -> Inlines:

@@ -18,7 +18,6 @@ from archgen.products.product_inputs import ProductInputs
 from archgen.products.project_views import ProjectViews, make_views
 from archgen.views.agreement.exchange_tables import gather_exchanges
 from archgen.views.pages.partner_spreads import make_partner_chapter, make_spread_writer
-from archgen.views.pages.short_spreads import is_short
 from archgen.views.report.data_sheets import make_data_sheets, number_sheets
 from archgen.views.report.deliverable import make_deliverable
 from archgen.views.report.printed_report import walk_sections
@@ -231,11 +230,51 @@ def test_of_many_partners_those_that_have_little_share_pages(tmp_path: Path) -> 
         assert rows[True, section.title] == rows[False, section.title] > 0, "each flow is told in both forms"
         assert len(_tables(section)) <= 2, "what flows, and what is still to be settled"
     writers = [make_spread_writer(views.lookup, folds=folds) for folds in (True, False)]
-    assert [writer and {is_short(writer, each) for each in writer.partners} for writer in writers] == [{True}, {False}]
+    assert [writer and writer.is_short for writer in writers] == [True, False]
     first = "\n".join(list_texts(short.sections[0]))
     assert re.search(r"\d components in .*: Component 0\.0, ", first)
     assert re.search(
         r"It rests on Partner 0: .* Deadlines: Chain 0 \(.* are its own, deadline 1000 ms: missed\)", first
+    )
+
+
+def test_of_many_partners_that_share_much_each_has_a_page(tmp_path: Path) -> None:
+    _BENCHMARK.generate(250, tmp_path, _BENCHMARK.Amounts(partners=25, chains=50))
+    checked = pipeline.check_project(tmp_path)
+    views = make_views(checked, OutputOptions(show_history=False), undrawn_kinds=("component",), is_report_alone=True)
+    outline = make_deliverable(views.lookup, replace_frozen(views.edition, document="deliverable"))
+    for section in _find(outline, "page:partners").sections:
+        flows, owes = _tables(section)
+        assert (flows.kind, owes.kind) == ("table:flows", "table:owes")
+        assert len(flows.rows) <= 16, "eight rows of what it gives, eight of what it takes"
+        assert len(owes.rows) <= 7, "four chains, how many more, what it owes and is owed"
+        assert len("".join(list_texts(section))) < 4_000
+    first = "\n".join(list_texts(_find(outline, "page:partners").sections[0]))
+    assert re.search(r"Gives \d+ interfaces; those of one partner, and those of \d+ partners with few, are told", first)
+    assert re.search(r"Partner \d+, Partner \d+, Partner \d+ and \d+ more", first), (
+        "the last row names some, counts others"
+    )
+    assert re.search(r"Deadlines: .* and \d+ more\.", first)
+    points = _tables(_find(outline, "page:findings"))[0]
+    assert max(len(_read(row[2]).split(", ")) for row in points.rows) <= 3, "who waits is counted"
+
+
+def test_of_many_deadlines_the_worst_stand_in_a_spread_and_the_others_are_counted(tmp_path: Path) -> None:
+    _BENCHMARK.generate(80, tmp_path, _BENCHMARK.Amounts(partners=3, chains=56))
+    checked = pipeline.check_project(tmp_path)
+    views = make_views(checked, OutputOptions(show_history=False), undrawn_kinds=("component",), is_report_alone=True)
+    outline = make_deliverable(views.lookup, replace_frozen(views.edition, document="deliverable"))
+    deadlines = [each for each in _tables(_find(outline, "page:partners")) if each.kind == "table:deadlines"]
+    assert [len(each.rows) for each in deadlines] == [13, 13, 13]
+    assert {_read(each.rows[-1][0]) for each in deadlines} == {"44 more stand in the workbook"}
+    chapter = _find(outline, "page:chains")
+    assert len(next(each for each in _tables(chapter) if each.anchor == "table:chains").rows) == 44
+    assert "Of 56 chains the first 16 are told, the first 44 listed; the workbook has all." in "".join(
+        list_texts(chapter)
+    )
+    summary = "".join(list_texts(outline.sections[0]))
+    assert "The worst first; 21 more missed, 8 more not proven, 24 more met" in summary, (
+        "they were said to have more room"
     )
 
 
