@@ -285,8 +285,10 @@ class DeliverablePrinter:
                 (
                     inline_text.to_inlines(self._title_activity(term.activity)),
                     inline_text.to_inlines(self.name_owners(term.activity)),
-                    timing_tables.duration_cell(time),
-                    (Text("", pieces=step.pieces),),
+                    timing_tables.duration_cell(time) if time.value or not term.counted_at else (),
+                    (Text("", pieces=step.pieces),)
+                    if time.value or not term.counted_at
+                    else (Text(f"counted with {self._title_activity(term.counted_at)}", muted=True),),
                 )
             )
         columns = make_columns(("Step", 1.6), ("Whose", 0.9), ("Takes", 0.9, "right"), ("When", 3))

@@ -306,3 +306,12 @@ def test_a_part_has_the_chapters_that_a_part_can_have(views: ProjectViews) -> No
     assert "Chains of effect" not in titles
     assert "Between partners" in titles
     assert [len(each) for each in number_sheets(lookup).values()] == [1]
+
+
+def test_a_step_whose_time_is_counted_at_another_one_says_so(deliverable: Outline) -> None:
+    table = next(
+        each for each in _tables(_find(deliverable, "page:chains")) if each.anchor.endswith("missed_dose_to_mark")
+    )
+    rows = {_read(row[0]): row for row in table.rows}
+    assert _read(rows["Risk Estimator"][2]) == "", "it was called 0 ms"
+    assert _read(rows["Risk Estimator"][3]) == "counted with Situation Assessment"
