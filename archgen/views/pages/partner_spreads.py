@@ -10,9 +10,8 @@ from archgen.frozen import dataclass
 from archgen.model.architecture import Partner
 from archgen.model.component import Component
 from archgen.model.partner_interfaces import components_at_ends
-from archgen.timing.chains.chain_advice import sum_known_parts
 from archgen.timing.chains.element_flows import ElementFlow
-from archgen.timing.figures.timing_values import TimingValue, largest_value, sum_fractions
+from archgen.timing.figures.timing_values import largest_value
 from archgen.views import element_references, inline_text
 from archgen.views.agreement import exchange_tables
 from archgen.views.agreement.exchange_tables import PartnerExchange, gather_exchanges
@@ -22,6 +21,8 @@ from archgen.views.elements.functional_level import first_sentence
 from archgen.views.inline_text import count_noun
 from archgen.views.lookup import Lookup
 from archgen.views.pages.short_spreads import MANY_PARTNERS, MAX_SHORT_ROWS, list_short_blocks
+from archgen.views.reliance import partner_impact
+from archgen.views.reliance.partner_impact import PartnerImpact
 from archgen.views.shapes import (
     Block,
     Bullets,
@@ -93,6 +94,7 @@ class SpreadWriter:
         self.partners = [each for each in architecture.partners.values() if each.id in {*self.given, *self.taken}]
         self.is_short = folds and len(self.partners) > MANY_PARTNERS
         self.row_limit = MAX_SHORT_ROWS if self.is_short else _MAX_ROWS
+        self.impacts: dict[str, PartnerImpact] = {}
         self.components: dict[str, list[Component]] = {}
         for component in architecture.components.values():
             for owner in component.owners if lookup.scope.shows_component(component.id) else ():
@@ -151,7 +153,7 @@ class SpreadWriter:
 
     def write_spread(self, partner: Partner) -> Section:
         """Write the section of a partner."""
-        shorts = list_short_blocks(self, partner) if self.is_short else None
+        shorts = self._list_short_blocks(partner) if self.is_short else None
         parts = (
             ("Gives", self._list_flow_blocks(partner, 0)),
             ("Takes", self._list_flow_blocks(partner, 1)),
@@ -176,6 +178,13 @@ class SpreadWriter:
             partner.title,
             (Paragraph(inline_text.to_inlines(words)), *blocks),
         )
+
+    def _list_short_blocks(self, partner: Partner) -> Iterator[Block]:
+        sides = []
+        for side, verb in enumerate(("Gives", "Takes")):
+            rows, words = self.fold_rows((self.given, self.taken)[side].get(partner.id, ()), side)
+            sides.append((verb, [self.write_flow(row, side) for row in rows], words))
+        yield from list_short_blocks(partner, sides, self.list_deadline_rows(partner), self.list_impact_blocks(partner))
 
     def _list_flow_blocks(self, partner: Partner, side: int) -> Iterator[Block]:
         interfaces = (self.given, self.taken)[side].get(partner.id, ())
@@ -282,25 +291,25 @@ class SpreadWriter:
 
     def list_deadline_rows(self, partner: Partner) -> Iterator[tuple[Inlines, ...]]:
         """Yield the deadlines that rest on a partner, with its share, the worst first."""
-        architecture, timing = self.lookup.architecture, self.lookup.timing
-        for result in timing.chains if timing else ():
-            if result.deadline is None or result.id not in architecture.chains:
-                continue
-            own = [
-                term
-                for term in result.terms
-                if partner.id in element_references.list_activity_owners(self.lookup, term.activity)
-            ]
-            if own:
-                share = TimingValue(sum_fractions(map(sum_known_parts, own)), result.bound.complete)
+        for each in self.find_impact(partner).chains:
+            result = each.result
+            if result.id in self.lookup.architecture.chains:
+                title = self.lookup.architecture.chains[result.id].title
                 yield (
-                    inline_text.to_inlines(Text(architecture.chains[result.id].title, ref=f"chain:{result.id}")),
-                    inline_text.to_inlines(f"{len(own)} of {len(result.terms)}"),
-                    timing_tables.duration_cell(share),
+                    inline_text.to_inlines(Text(title, ref=f"chain:{result.id}")),
+                    inline_text.to_inlines(f"{each.own_steps} of {len(result.terms)}"),
+                    timing_tables.duration_cell(each.own_time),
                     timing_tables.duration_cell(result.bound),
                     timing_tables.deadline_cell(result),
                     chain_status.verdict_chip(result),
                 )
+
+    def find_impact(self, partner: Partner) -> PartnerImpact:
+        """Return what rests on a partner, as `archgen impact` and the site tell it."""
+        if partner.id not in self.impacts:
+            late = partner_impact.find_parts_of(self.lookup, partner)
+            self.impacts[partner.id] = partner_impact.find_impact(self.lookup, self.exchanges, late)
+        return self.impacts[partner.id]
 
     def list_deadline_blocks(self, partner: Partner) -> Iterator[Table]:
         """Yield the table of the deadlines that rest on a partner."""
@@ -390,43 +399,19 @@ class SpreadWriter:
 
     def list_impact_blocks(self, partner: Partner) -> Iterator[Paragraph]:
         """Say what rests on a partner: deadlines, requirements that nobody else serves, use cases, who reads from it."""
-        lookup = self.lookup
-        own = {component.id for component in self.components.get(partner.id, ())}
-        results = [result for result in (lookup.timing.chains if lookup.timing else ()) if result.deadline]
-        resting = [
-            each
-            for each in results
-            if any(
-                partner.id in element_references.list_activity_owners(self.lookup, term.activity) for term in each.terms
-            )
-        ]
-        alone = [
-            name
-            for name, servers in lookup.components_for_requirement.items()
-            if name in lookup.architecture.requirements
-            and all(set(lookup.architecture.leaves_of(server.id)) <= own for server in servers)
-        ]
-        steps = lookup.steps.by_use_case if lookup.architecture.use_cases else {}
-        touched = [
-            name
-            for name in steps
-            if any(name in lookup.steps.by_component.get(component, ()) for component in sorted(own))
-        ]
-        readers = {
-            component.id
-            for terms in self.given.get(partner.id, ())
-            for component in components_at_ends(lookup.architecture, terms.interface)[1]
-        }
-        takers = {terms.interface.pair[1] for terms in self.given.get(partner.id, ())}
+        impact = self.find_impact(partner)
+        alone = [each.requirement.id for each in impact.requirements if not each.others]
+        deadlines = count_noun(len(impact.chains) + len(impact.free_chains), "deadline")
+        use_cases = count_noun(impact.use_case_count, "use case")
+        wait = "waits" if len(impact.waiting) == 1 else "wait"
         sentences = [
-            f"{len(resting)} of {count_noun(len(results), 'deadline')}" if resting else "",
+            f"{len(impact.chains)} of {deadlines}" if impact.chains else "",
             f"{count_noun(len(alone), 'requirement')} that nobody else serves ({join_first(alone, 6)})"
             if alone
             else "",
-            f"{len(touched)} of {count_noun(len(steps), 'use case')}" if touched else "",
-            f"{count_noun(len(readers), 'component')} of {count_noun(len(takers), 'partner')} that read from it"
-            if readers
-            else "",
+            f"{len(impact.use_cases)} of {use_cases}" if impact.use_cases else "",
+            f"{count_noun(len(impact.readers), 'component')} that read from it" if impact.readers else "",
+            f"{count_noun(len(impact.waiting), 'partner')} that {wait} for it" if impact.waiting else "",
         ]
         if found := [sentence for sentence in sentences if sentence]:
             yield Paragraph(inline_text.to_inlines(f"It rests on {partner.title}: {'; '.join(found)}."))

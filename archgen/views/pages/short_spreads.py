@@ -2,15 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from typing import TYPE_CHECKING
+from collections.abc import Iterable, Iterator, Sequence
 
 from archgen.model.architecture import Partner
 from archgen.views import inline_text
 from archgen.views.shapes import Block, Inlines, Paragraph, Table, Text, drop_empty_columns, make_columns
-
-if TYPE_CHECKING:
-    from archgen.views.pages.partner_spreads import SpreadWriter
 
 MANY_PARTNERS = 12
 """With more of them, a spread for each would make a document of partners alone."""
@@ -18,15 +14,20 @@ MAX_SHORT_ROWS = 8
 _MAX_DEADLINES = 3
 
 
-def list_short_blocks(writer: SpreadWriter, partner: Partner) -> Iterator[Block]:
-    """Yield what a partner gives and takes in one table, and in sentences what rests on it."""
+def list_short_blocks(
+    partner: Partner,
+    sides: Iterable[tuple[str, Sequence[tuple[Inlines, ...]], str]],
+    deadline_rows: Iterable[tuple[Inlines, ...]],
+    impacts: Iterable[Paragraph],
+) -> Iterator[Block]:
+    """Yield what a partner gives and takes in one table, and in sentences what rests on it.
+
+    Each side is a verb, the rows of its flows, and a sentence on those that are told together.
+    """
     cells, remarks = [], []
-    for side, verb in enumerate(("Gives", "Takes")):
-        rows, words = writer.fold_rows((writer.given, writer.taken)[side].get(partner.id, ()), side)
+    for verb, rows, words in sides:
         remarks += [f"{verb} {words}"] if words else []
-        cells += [
-            ((Text(verb, strong=True),) if not at else (), *writer.write_flow(row, side)) for at, row in enumerate(rows)
-        ]
+        cells += [((Text(verb, strong=True),) if not at else (), *row) for at, row in enumerate(rows)]
     columns = make_columns(
         ("", 0.5),
         ("What, by or for", 1.6),
@@ -44,8 +45,8 @@ def list_short_blocks(writer: SpreadWriter, partner: Partner) -> Iterator[Block]
     )
     if remarks:
         yield Paragraph(inline_text.to_inlines(Text(" ".join((*remarks, "The workbook has each.")), muted=True)))
-    deadlines = list(map(_phrase_deadline, writer.list_deadline_rows(partner)))
-    for paragraph in writer.list_impact_blocks(partner):
+    deadlines = list(map(_phrase_deadline, deadline_rows))
+    for paragraph in impacts:
         shares = inline_text.join_first(deadlines, _MAX_DEADLINES, "; ")
         yield Paragraph((*paragraph.inlines, *((Text(" Deadlines: "), *shares, Text(".")) if shares else ())))
 

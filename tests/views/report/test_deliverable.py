@@ -18,6 +18,7 @@ from archgen.products.product_inputs import ProductInputs
 from archgen.products.project_views import ProjectViews, make_views
 from archgen.views.agreement.exchange_tables import gather_exchanges
 from archgen.views.pages.partner_spreads import make_partner_chapter, make_spread_writer
+from archgen.views.reliance.partner_impact import find_impact, find_parts_of
 from archgen.views.report.data_sheets import make_data_sheets, number_sheets
 from archgen.views.report.deliverable import make_deliverable
 from archgen.views.report.printed_report import walk_sections
@@ -315,3 +316,15 @@ def test_a_step_whose_time_is_counted_at_another_one_says_so(deliverable: Outlin
     rows = {_read(row[0]): row for row in table.rows}
     assert _read(rows["Risk Estimator"][2]) == "", "it was called 0 ms"
     assert _read(rows["Risk Estimator"][3]) == "counted with Situation Assessment"
+
+
+def test_what_rests_on_a_partner_is_what_archgen_impact_says(views: ProjectViews, deliverable: Outline) -> None:
+    for section in _find(deliverable, "page:partners").sections:
+        partner = views.lookup.architecture.partners[section.subject]
+        exchanges = gather_exchanges(views.lookup)
+        impact = find_impact(views.lookup, exchanges, find_parts_of(views.lookup, partner))
+        alone = [each.requirement.id for each in impact.requirements if not each.others]
+        words = next(text for text in list_texts(section) if text.startswith("It rests on"))
+        assert (f"{len(impact.readers)} components that read from it") in words, "11 stood beside 12"
+        assert f"{len(impact.chains)} of 8 deadlines" in words
+        assert f"({', '.join(alone)})" in words or not alone, "in the project's order"
