@@ -82,10 +82,10 @@ def join_inlines(items: Iterable[Inlines], separator: str = ", ") -> Inlines:
     return tuple(chain.from_iterable([(between, *run) if index else run for index, run in enumerate(runs)]))
 
 
-def join_first(items: Sequence[Inlines], limit: int = 3) -> Inlines:
-    """Join the first pieces of text with commas, and count the others."""
+def join_first(items: Sequence[Inlines], limit: int = 3, separator: str = ", ") -> Inlines:
+    """Join the first pieces of text, and count the others."""
     rest = (Text(f" and {len(items) - limit} more"),) if len(items) > limit else ()
-    return (*join_inlines(items[:limit]), *rest)
+    return (*join_inlines(items[:limit], separator), *rest)
 
 
 def join_lines(items: Iterable[Inlines]) -> Inlines:

@@ -423,14 +423,12 @@ def _to_plain(value: object, runs: dict[Text, dict[str, Any]]) -> Any:  # noqa: 
     kind = value.__class__
     if kind in _SCALARS:
         return value
-    if kind is Text:
-        # A meter of 1 and one of 1.0 are equal, and are not written alike.
-        if value.meter or value.pieces:
-            return _tag_fields(value, runs)
+    # A meter of 1 and one of 1.0 are equal, and are not written alike.
+    if isinstance(value, Text) and not (value.meter or value.pieces):
         if value not in runs:
             runs[value] = _tag_fields(value, runs)
         return runs[value]
-    if kind is tuple or isinstance(value, (tuple, list)):
+    if isinstance(value, (tuple, list)):
         return [_to_plain(item, runs) for item in value]
     if isinstance(value, Mapping):
         return {str(key): _to_plain(item, runs) for key, item in value.items()}

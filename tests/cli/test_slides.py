@@ -84,15 +84,20 @@ def test_of_forty_partners_and_nine_chains_each_is_there(run: Run, tmp_path: Pat
     assert len({f"K{at}" for at in range(9)} & set(slides)) == 8
 
 
-@pytest.mark.parametrize(("count", "has_reasons"), [(3, True), (8, False)])
-def test_the_steps_of_a_chain_fill_its_slide(run: Run, tmp_path: Path, *, count: int, has_reasons: bool) -> None:
+def _write_row(folder: Path, count: int) -> Path:
+    """Write a project of a chain of so many steps."""
     first = "c0: {outputs: {o: T}, timing: {rate: 10 Hz, wcet: 1 ms}}"
     later = "c{0}: {{inputs: {{i: c{1}.o}}, outputs: {{o: T}}, timing: {{rate: 10 Hz, wcet: 1 ms}}}}"
     components = ", ".join([first, *(later.format(at, at - 1) for at in range(1, count))])
     text = "project: {title: Row}\npartners: {ada: {title: Ada}}\ntypes: {T: std_msgs/msg/Bool}\nrequirements: {R-1: It stops at once}\n"
     text += f"groups: {{g: {{owner: ada, components: {{{components}}}}}}}\n"
     text += f"chains: {{stop: {{through: [g.c0, g.c{count - 1}], deadline: 3 s, requirements: [R-1]}}}}\n"
-    assert run("slides", _write(tmp_path / "row", text), "-o", tmp_path / "s.pptx").status == 0
+    return _write(folder, text)
+
+
+@pytest.mark.parametrize(("count", "has_reasons"), [(3, True), (8, False)])
+def test_the_steps_of_a_chain_fill_its_slide(run: Run, tmp_path: Path, *, count: int, has_reasons: bool) -> None:
+    assert run("slides", _write_row(tmp_path / "row", count), "-o", tmp_path / "s.pptx").status == 0
     (slide,) = [each for each in pptx.Presentation(str(tmp_path / "s.pptx")).slides if each.shapes.title.text == "Stop"]
     (table,) = [shape for shape in slide.shapes if shape.has_table]
     (picture,) = [shape for shape in slide.shapes if not shape.has_text_frame and not shape.has_table]
@@ -101,3 +106,23 @@ def test_the_steps_of_a_chain_fill_its_slide(run: Run, tmp_path: Path, *, count:
     assert (rows[0][-1] == "Why") is has_reasons
     assert (table.left < picture.left + picture.width) is has_reasons
     assert "R-1 It stops at once" in _read(tmp_path / "s.pptx")["Stop"]
+
+
+def test_more_steps_than_stand_beside_a_picture_have_slides_of_their_own_with_reasons(run: Run, tmp_path: Path) -> None:
+    assert run("slides", _write_row(tmp_path / "row", 14), "-o", tmp_path / "s.pptx").status == 0
+    slides = list(pptx.Presentation(str(tmp_path / "s.pptx")).slides)
+    (drawn,) = [
+        each for each in slides if each.shapes.title.text.startswith("Stop") and "steps" not in each.shapes.title.text
+    ]
+    assert not any(shape.has_table for shape in drawn.shapes), (
+        "the rest of the table stood alone at the right of a second one"
+    )
+    tables = [
+        shape.table
+        for each in slides
+        for shape in each.shapes
+        if each.shapes.title.text.startswith("Stop: its steps") and shape.has_table
+    ]
+    rows = [[cell.text for cell in row.cells] for table in tables for row in list(table.rows)[1:]]
+    assert [row[0] for row in rows] == [f"c{at}" for at in range(14)]
+    assert tables[0].cell(0, 5).text == "Why"

@@ -15,12 +15,12 @@ class _Counted(tuple[PlannedCallback, ...]):
     """Counts who is asked for while somebody goes through all."""
 
     __slots__ = ()
-    count = 0
+    visits = 0
 
     def __iter__(self) -> Iterator[PlannedCallback]:
         """Yield each."""
         for callback in super().__iter__():
-            type(self).count += 1
+            type(self).visits += 1
             yield callback
 
 
@@ -29,9 +29,9 @@ def _count_callbacks(reader_count: int) -> int:
     plan = build_plan(
         system([timed("cam", 100, 1), *(event(name, 1, "cam") for name in names)], [arc("cam", name) for name in names])
     )
-    _Counted.count = 0
+    _Counted.visits = 0
     assert WireStates(replace(plan, callbacks=_Counted(plan.callbacks)), ()).keeps_order == [True] * reader_count
-    return _Counted.count
+    return _Counted.visits
 
 
 def test_no_wire_goes_through_all_callbacks() -> None:

@@ -112,8 +112,10 @@ class SiteChanges:
         """Return the components that a page is about, and the anchors of the pages that tell their changes: its own first."""
         kind, name = split_anchor(anchor)
         nodes = self.comparison.after.architecture.nodes
+        if kind == "node" and name in nodes:
+            return list(nodes[name].implements), [anchor, *(f"component:{each}" for each in nodes[name].implements)]
         if kind != "component":
-            return list(nodes[name].implements) if kind == "node" and name in nodes else [], [anchor]
+            return [], [anchor]
         return [name], [anchor, *(f"node:{each.id}" for each in nodes.values() if name in each.implements)]
 
     @cached_property
@@ -239,11 +241,14 @@ def _mark_table(table: Table, kinds: Mapping[str, ElementChange]) -> Table:
 def _list_change_blocks(anchor: str, site_changes: SiteChanges) -> Iterator[Block]:
     """Yield what changed of an element, both versions side by side (not of one that is new as a whole), and what comes to it."""
     components, anchors = site_changes.find_elements(anchor)
+    of_several = anchors[1:] if len(anchors) > 2 else ()  # noqa: PLR2004 - its own, and that of one other
     rows = tuple(
-        row
+        ((Text(split_anchor(each)[1], code=True), Text(" · "), *what), *values)
+        if each in of_several
+        else (what, *values)
         for each in anchors
         for change in site_changes.changes_by_page.get(each, ())
-        for row in _list_rows(change, each)
+        for what, *values in _list_rows(change, each)
     )
     if rows:
         columns = (Column("What", 1.2), Column(f"Before ({site_changes.since})", 2), Column("Now", 2))

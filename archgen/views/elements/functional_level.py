@@ -132,7 +132,9 @@ def first_sentence(markdown: str | None) -> str | None:
     line = " ".join(markdown.split("\n\n")[0].split())
     # A full stop counts only before a blank or the end, so that "0.5 m" and "ROS2.x" stay whole.
     end = next((i for i, c in enumerate(line) if c in ".!?" and line[i + 1 : i + 2] in {"", " "}), len(line) - 1)
-    return inline_text.cut_text(line[: end + 1], _MAX_SENTENCE)
+    # What a colon promises stands in the next paragraph.
+    sentence = f"{line[:-1]}…" if end == len(line) - 1 and line.endswith(":") else line[: end + 1]
+    return inline_text.cut_text(sentence, _MAX_SENTENCE)
 
 
 def describe_purpose(markdown: str | None) -> Inlines:

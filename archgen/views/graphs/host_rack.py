@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import textwrap
 from collections import defaultdict
 from collections.abc import Iterator, Mapping, Sequence
 from decimal import ROUND_CEILING
@@ -29,6 +30,8 @@ _UPRIGHT_WIDTH = 440.0
 _LINK_STEP, _LINK_WIDTH, _STUB = 20.0, 13.0, 22.0
 _TRAFFIC_WIDTH = 150.0
 _BYTE_UNITS = ((10**9, "GB"), (10**6, "MB"), (10**3, "kB"))
+_SMALL_CHARACTER = 4.4
+"""How wide a character of the smallest writing is."""
 _FEW_HOSTS = 6
 """Up to here a strip has room for more rows."""
 _VERDICTS: Mapping[str, tuple[str, SheetColour]] = {
@@ -195,11 +198,17 @@ def _write_heading(  # noqa: PLR0913, PLR0917 - a host and its place
     lookup: Lookup, canvas: _Canvas, host: Host, x: float, top: float, height: float, characters: int = 36
 ) -> None:
     nodes = _list_nodes(lookup, host)
-    canvas.write(x, top + 14, host.title, characters, size=10.5, bold=True, ref=f"host:{host.id}", tooltip=host.title)
+    # A strip of two rows and more has room for a second line.
+    most = 2 if height > _BARE_HEIGHT + 2 * _ROW_HEIGHT else 1
+    lines = textwrap.wrap(host.title, characters, max_lines=most, placeholder="…") or [""]
+    for at, line in enumerate(lines):
+        y = top + 14 + 12 * at
+        canvas.write(x, y, line, characters, size=10.5, bold=True, ref=f"host:{host.id}", tooltip=host.title)
+    below = top + 12 * (len(lines) - 1)
     cores = [count_noun(host.cores, "core")] if host.cores is not None else []
-    canvas.write(x, top + 28, " · ".join([*cores, count_noun(len(nodes), "node")]), ink="muted")
+    canvas.write(x, below + 28, " · ".join([*cores, count_noun(len(nodes), "node")]), ink="muted")
     tags = ", ".join(host.tags)
-    canvas.write(x, top + 41, tags, characters, size=8, ink="violet")
+    canvas.write(x, below + 41, tags, characters, size=8, ink="violet")
     load = _load_of(lookup, host)
     y = top + height - 22
     if load is None or load.cores is None:
@@ -333,12 +342,14 @@ def _draw_nodes(  # noqa: PLR0913, PLR0917 - a host and its place
         sign = "" if all(share.complete for share in rest) else "at least "
         words = f"{len(rest)} more, together {sign}{_round_up(total * 100)} %"
         canvas.write(x, top + 24 + rows * 14, words, size=8, ink="muted")
-    for words in _describe_containers(lookup, host, shares):
-        canvas.write(x, top + height - 8, words, int(width / 3.9), size=8, ink="violet")
+    for words in _describe_containers(lookup, host, shares, int(width / _SMALL_CHARACTER)):
+        canvas.write(x, top + height - 8, words, size=8, ink="violet")
 
 
-def _describe_containers(lookup: Lookup, host: Host, shares: Mapping[str, TimingValue]) -> Iterator[str]:
-    """Yield a line on the heaviest container, with how many others there are."""
+def _describe_containers(
+    lookup: Lookup, host: Host, shares: Mapping[str, TimingValue], characters: int
+) -> Iterator[str]:
+    """Yield a line on the heaviest container, with how many others there are: its title is cut, its figures are not."""
     architecture = lookup.architecture
     described = []
     for container in architecture.containers.values():
@@ -347,12 +358,16 @@ def _describe_containers(lookup: Lookup, host: Host, shares: Mapping[str, Timing
         members = [node.id for node in architecture.nodes.values() if node.container == container.id]
         total = sum((shares[name].value or Fraction(0) for name in members if name in shares), Fraction(0))
         threads = find_container_threads(architecture, container)
-        words = [count_noun(len(members), "node"), *([count_noun(threads, "thread")] if threads is not None else [])]
-        described.append((total, f"■ {container.title}: {_round_up(total * 100)} %, {', '.join(words)}"))
+        load = f": {_round_up(total * 100)} %, {count_noun(len(members), 'node')}"
+        described.append(
+            (total, container.title, f"{load}, {count_noun(threads, 'thread')}" if threads else load, load)
+        )
     if described:
-        described.sort(key=lambda each: -each[0])
+        _, title, *forms = max(described, key=lambda each: each[0])
         more = f"; {len(described) - 1} more" if len(described) > 1 else ""
-        yield described[0][1] + more
+        rooms = [characters - len(f"■ {form}{more}") for form in forms]
+        at = 0 if len(title) <= rooms[0] else 1
+        yield f"■ {cut_text(title, rooms[at])}{forms[at]}{more}"
 
 
 def _draw_link(  # noqa: PLR0913, PLR0917 - a link and its place

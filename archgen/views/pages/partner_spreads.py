@@ -10,9 +10,8 @@ from archgen.frozen import dataclass
 from archgen.model.architecture import Partner
 from archgen.model.component import Component
 from archgen.model.partner_interfaces import components_at_ends
-from archgen.timing.chains.chain_advice import sum_known_parts
 from archgen.timing.chains.element_flows import ElementFlow
-from archgen.timing.figures.timing_values import TimingValue, largest_value, sum_fractions
+from archgen.timing.figures.timing_values import largest_value
 from archgen.views import element_references, inline_text
 from archgen.views.agreement import exchange_tables
 from archgen.views.agreement.exchange_tables import PartnerExchange, gather_exchanges
@@ -21,7 +20,9 @@ from archgen.views.agreement.promise_rows import QOS_OFFERED
 from archgen.views.elements.functional_level import first_sentence
 from archgen.views.inline_text import count_noun
 from archgen.views.lookup import Lookup
-from archgen.views.pages.short_spreads import is_short, list_short_blocks
+from archgen.views.pages.short_spreads import MANY_PARTNERS, MAX_SHORT_ROWS, list_short_blocks
+from archgen.views.reliance import partner_impact
+from archgen.views.reliance.partner_impact import PartnerImpact
 from archgen.views.shapes import (
     Block,
     Bullets,
@@ -44,6 +45,8 @@ _MAX_MATRIX_PARTNERS = 10
 _MAX_ROWS = 44
 """More flows or components than these are told together: of one giver and taker, then of one partner."""
 _MAX_GRAVE_ROWS = 12
+_MAX_NAMES = 6
+"""So many partners are named in a cell; the others are counted."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -90,6 +93,9 @@ class SpreadWriter:
         interfaces = [terms for exchange in exchanges for terms in exchange.interfaces]
         self.given, self.taken = (_group_by(interfaces, side) for side in (0, 1))
         self.partners = [each for each in architecture.partners.values() if each.id in {*self.given, *self.taken}]
+        self.is_short = folds and len(self.partners) > MANY_PARTNERS
+        self.row_limit = MAX_SHORT_ROWS if self.is_short else _MAX_ROWS
+        self.impacts: dict[str, PartnerImpact] = {}
         self.components: dict[str, list[Component]] = {}
         for component in architecture.components.values():
             for owner in component.owners if lookup.scope.shows_component(component.id) else ():
@@ -148,7 +154,7 @@ class SpreadWriter:
 
     def write_spread(self, partner: Partner) -> Section:
         """Write the section of a partner."""
-        shorts = self._list_short_blocks(partner)
+        shorts = self._list_short_blocks(partner) if self.is_short else None
         parts = (
             ("Gives", self._list_flow_blocks(partner, 0)),
             ("Takes", self._list_flow_blocks(partner, 1)),
@@ -166,7 +172,7 @@ class SpreadWriter:
         groups = {component.group: None for component in own}
         titles = [self.lookup.architecture.groups[each].title for each in groups]
         places = f" in {join_first(titles, 3)}" if titles else ""
-        names = f": {', '.join(component.title for component in own)}" if shorts and own else ""
+        names = f": {join_first([component.title for component in own], self.row_limit)}" if shorts and own else ""
         words = f"{lead}{count_noun(len(own), 'component')}{places}{names}."
         return Section(
             f"partner:{partner.id}",
@@ -174,34 +180,21 @@ class SpreadWriter:
             (Paragraph(inline_text.to_inlines(words)), *blocks),
         )
 
-    def _list_short_blocks(self, partner: Partner) -> Iterator[Block] | None:
-        """Return what is said of a partner that has little; None of another one."""
-        interfaces = [sides.get(partner.id, ()) for sides in (self.given, self.taken)]
-        counts = (sum(map(len, interfaces)), len(self.components.get(partner.id, ())), len(self.partners))
-        if not self.folds or not is_short(*counts):
-            return None
-        flow_rows = [
-            [self._write_flow(row, side) for row in self._gather_rows(each, side, by_output=True)]
-            for side, each in enumerate(interfaces)
-        ]
-        return list_short_blocks(
-            partner, flow_rows, self.list_deadline_blocks(partner), self.list_impact_blocks(partner)
-        )
+    def _list_short_blocks(self, partner: Partner) -> Iterator[Block]:
+        sides = []
+        for side, verb in enumerate(("Gives", "Takes")):
+            rows, words = self.fold_rows((self.given, self.taken)[side].get(partner.id, ()), side)
+            sides.append((verb, [self.write_flow(row, side) for row in rows], words))
+        yield from list_short_blocks(partner, sides, self.list_deadline_rows(partner), self.list_impact_blocks(partner))
 
     def _list_flow_blocks(self, partner: Partner, side: int) -> Iterator[Block]:
         interfaces = (self.given, self.taken)[side].get(partner.id, ())
         if not interfaces:
             yield Paragraph(inline_text.to_inlines(Text("Nothing.", muted=True)))
             return
-        rows = self._gather_rows(interfaces, side, by_output=True)
-        words = ""
-        if self.folds and len(rows) > _MAX_ROWS:
-            rows, words = self._gather_rows(interfaces, side, by_output=False), "of one giver and taker"
-        if self.folds and len(rows) > _MAX_ROWS:
-            rows, words = self._join_by_partner(rows), "of one partner"
+        rows, words = self.fold_rows(interfaces, side)
         if words:
-            sentence = f"{count_noun(len(interfaces), 'interface')}; those {words} are told together with the highest figures. The workbook has each."
-            yield Paragraph(inline_text.to_inlines(Text(sentence, muted=True)))
+            yield Paragraph(inline_text.to_inlines(Text(f"{words} The workbook has each.", muted=True)))
         columns = make_columns(
             ("What, by" if side == 0 else "What, for", 1.6),
             ("To" if side == 0 else "From", 1.6),
@@ -214,19 +207,32 @@ class SpreadWriter:
         )
         verb = "gives" if side == 0 else "takes"
         anchor = f"table:{verb}/{partner.id}"
-        cells = tuple(self._write_flow(row, side) for row in rows)
+        cells = tuple(self.write_flow(row, side) for row in rows)
         yield drop_empty_columns(Table(anchor, f"{partner.title} {verb}", columns, cells, numbered=False, dense=True))
 
-    def _gather_rows(self, interfaces: Iterable[InterfaceTerms], side: int, *, by_output: bool) -> list[_Flow]:
-        """Return a row for each output, or for each giver with its takers."""
+    def fold_rows(self, interfaces: Sequence[InterfaceTerms], side: int) -> tuple[list[_Flow], str]:
+        """Return the rows of what is given or taken, no more than there is room for, and what is told together."""
+        rows, words = self.gather_rows(interfaces, side), ""
+        for together in ("giver and taker", "partner") if self.folds else ():
+            if len(rows) > self.row_limit:
+                rows, words = self.gather_rows(interfaces, side, together), f"those of one {together}"
+        if self.folds and len(rows) > self.row_limit:
+            heaviest = set(sorted(range(len(rows)), key=lambda at: -len(rows[at].terms))[: self.row_limit - 1])
+            rest = [terms for at, row in enumerate(rows) if at not in heaviest for terms in row.terms]
+            rows = [*(rows[at] for at in sorted(heaviest)), self._make_flow(rest, 1 - side)]
+            words += f", and those of {len(rows[-1].partners)} partners with few,"
+        count = count_noun(len(interfaces), "interface")
+        return rows, f"{count}; {words} are told together with the highest figures." if words else ""
+
+    def gather_rows(self, interfaces: Iterable[InterfaceTerms], side: int, together: str = "output") -> list[_Flow]:
+        """Return a row for each output, for each giver with its takers, or for each partner."""
         rows: dict[tuple[str, ...], list[InterfaceTerms]] = {}
         for terms in interfaces:
-            givers, takers = components_at_ends(self.lookup.architecture, terms.interface)
-            if by_output:
-                rows.setdefault((terms.interface.key,), []).append(terms)
-            else:
-                others = tuple(each.id for each in (*givers, *takers))
-                rows.setdefault((terms.interface.pair[1 - side], *others), []).append(terms)
+            key: tuple[str, ...] = (terms.interface.key if together == "output" else terms.interface.pair[1 - side],)
+            if together == "giver and taker":
+                ends = components_at_ends(self.lookup.architecture, terms.interface)
+                key = (*key, *(each.id for components in ends for each in components))
+            rows.setdefault(key, []).append(terms)
         return [self._make_flow(each, 1 - side) for each in rows.values()]
 
     def _make_flow(self, terms: Sequence[InterfaceTerms], other: int) -> _Flow:
@@ -250,27 +256,9 @@ class SpreadWriter:
             if activities[flow.arc.target].node in takers and flow.arc.role == "data":
                 yield flow
 
-    @staticmethod
-    def _join_by_partner(rows: Iterable[_Flow]) -> list[_Flow]:
-        by_partner: dict[tuple[str, ...], list[_Flow]] = {}
-        for row in rows:
-            by_partner.setdefault(row.partners, []).append(row)
-        return [
-            _Flow(
-                partners,
-                tuple(dict.fromkeys(each for row in joined for each in row.givers)),
-                tuple(dict.fromkeys(each for row in joined for each in row.takers)),
-                tuple(dict.fromkeys(each for row in joined for each in row.types)),
-                tuple(dict.fromkeys(each for row in joined for each in row.topics)),
-                tuple(each for row in joined for each in row.terms),
-                tuple(each for row in joined for each in row.flows),
-            )
-            for partners, joined in by_partner.items()
-        ]
-
-    def _write_flow(self, row: _Flow, side: int) -> tuple[Inlines, ...]:
-        architecture = self.lookup.architecture
-        partners = (inline_text.join_inlines(inline_text.partner_link(architecture, each) for each in row.partners),)
+    def write_flow(self, row: _Flow, side: int) -> tuple[Inlines, ...]:
+        """Return the cells of a row."""
+        partners = (self._name_partners(row.partners),)
         what = join_first(list(row.types), 2)
         own, others = (row.givers, row.takers) if side == 0 else (row.takers, row.givers)
         own_lines = filter(None, ((Text(what, strong=True),), self._name_ends(own)))
@@ -290,6 +278,10 @@ class SpreadWriter:
             exchange_tables.list_open_words(row.terms),
         )
 
+    def _name_partners(self, partner_ids: Iterable[str]) -> Inlines:
+        links = [inline_text.partner_link(self.lookup.architecture, each) for each in partner_ids]
+        return inline_text.join_first(links, _MAX_NAMES // (2 if self.is_short else 1) if self.folds else len(links))
+
     def _name_ends(self, component_ids: Sequence[str]) -> Inlines:
         """Name the first of some components, and count the others."""
         if not component_ids:
@@ -298,30 +290,30 @@ class SpreadWriter:
         more = f" +{len(component_ids) - 1}" if len(component_ids) > 1 else ""
         return (Text(f"{title}{more}", muted=True),)
 
-    def list_deadline_blocks(self, partner: Partner) -> Iterator[Table]:
-        """Yield the deadlines that rest on a partner, with its share."""
-        architecture, timing = self.lookup.architecture, self.lookup.timing
-        rows = []
-        for result in timing.chains if timing else ():
-            if result.deadline is None or result.id not in architecture.chains:
-                continue
-            own = [
-                term
-                for term in result.terms
-                if partner.id in element_references.list_activity_owners(self.lookup, term.activity)
-            ]
-            if own:
-                share = TimingValue(sum_fractions(map(sum_known_parts, own)), result.bound.complete)
-                rows.append(
-                    (
-                        inline_text.to_inlines(Text(architecture.chains[result.id].title, ref=f"chain:{result.id}")),
-                        inline_text.to_inlines(f"{len(own)} of {len(result.terms)}"),
-                        timing_tables.duration_cell(share),
-                        timing_tables.duration_cell(result.bound),
-                        timing_tables.deadline_cell(result),
-                        chain_status.verdict_chip(result),
-                    )
+    def list_deadline_rows(self, partner: Partner) -> Iterator[tuple[Inlines, ...]]:
+        """Yield the deadlines that rest on a partner, with its share, the worst first."""
+        for each in self.find_impact(partner).chains:
+            result = each.result
+            if result.id in self.lookup.architecture.chains:
+                title = self.lookup.architecture.chains[result.id].title
+                yield (
+                    inline_text.to_inlines(Text(title, ref=f"chain:{result.id}")),
+                    inline_text.to_inlines(f"{each.own_steps} of {len(result.terms)}"),
+                    timing_tables.duration_cell(each.own_time),
+                    timing_tables.duration_cell(result.bound),
+                    timing_tables.deadline_cell(result),
+                    chain_status.verdict_chip(result),
                 )
+
+    def find_impact(self, partner: Partner) -> PartnerImpact:
+        """Return what rests on a partner, as `archgen impact` and the site tell it."""
+        if partner.id not in self.impacts:
+            late = partner_impact.find_parts_of(self.lookup, partner)
+            self.impacts[partner.id] = partner_impact.find_impact(self.lookup, self.exchanges, late)
+        return self.impacts[partner.id]
+
+    def list_deadline_blocks(self, partner: Partner) -> Iterator[Table]:
+        """Yield the table of the deadlines that rest on a partner."""
         columns = make_columns(
             ("Chain", 2.2),
             ("Its steps", 0.7, "right"),
@@ -330,15 +322,23 @@ class SpreadWriter:
             ("Deadline", 0.8, "right"),
             ("Verdict", 0.7),
         )
-        if rows:
+        if rows := list(self.list_deadline_rows(partner)):
             caption = f"Deadlines that rest on {partner.title}"
-            yield Table(f"table:deadlines/{partner.id}", caption, columns, tuple(rows), numbered=False, dense=True)
+            cells = tuple(self._cut_rows(rows, len(columns)))
+            yield Table(f"table:deadlines/{partner.id}", caption, columns, cells, numbered=False, dense=True)
+
+    def _cut_rows(self, rows: Sequence[tuple[Inlines, ...]], width: int) -> Iterator[tuple[Inlines, ...]]:
+        """Yield the first rows, which are the gravest, and a row that says how many more there are."""
+        limit = _MAX_GRAVE_ROWS // (3 if self.is_short else 1) if self.folds else len(rows)
+        yield from rows[:limit]
+        if len(rows) > limit:
+            yield (Text(f"{len(rows) - limit} more stand in the workbook", muted=True),), *(() for _ in range(1, width))
 
     def _list_component_blocks(self, partner: Partner) -> Iterator[Block]:
         own = self.components.get(partner.id, [])
         caption = f"Components of {partner.title}"
-        if self.folds and len(own) > _MAX_ROWS:
-            titles = join_first([component.title for component in own], _MAX_ROWS)
+        if self.folds and len(own) > self.row_limit:
+            titles = join_first([component.title for component in own], self.row_limit)
             yield Paragraph(inline_text.to_inlines(f"{titles}. Each has a data sheet."))
             return
         rows = tuple(
@@ -367,10 +367,7 @@ class SpreadWriter:
 
     def list_open_blocks(self, partner: Partner) -> Iterator[Block]:
         """Yield what a partner and others have still to settle."""
-        rows = list(self._list_grave_rows(partner))
-        if self.folds and len(rows) > _MAX_GRAVE_ROWS:
-            more = Text(f"{len(rows) - _MAX_GRAVE_ROWS} more stand in the workbook", muted=True)
-            rows = [*rows[:_MAX_GRAVE_ROWS], ((), (), (more,))]
+        rows = list(self._cut_rows(list(self._list_grave_rows(partner)), 3))
         for name, sides in (("owes", self.given), ("is owed", self.taken)):
             for term, interfaces in exchange_tables.group_open_terms(sides.get(partner.id, ())).items():
                 place = 1 if name == "owes" else 0
@@ -378,9 +375,7 @@ class SpreadWriter:
                 types = list(dict.fromkeys(each.interface.type or each.title for each in interfaces))
                 rows.append(
                     (
-                        inline_text.join_inlines(
-                            inline_text.partner_link(self.lookup.architecture, each) for each in others
-                        ),
+                        self._name_partners(others),
                         inline_text.to_inlines(Text(name, status="open" if name == "owes" else None)),
                         inline_text.to_inlines(f"{exchange_tables.shorten_name(term)} of {join_first(types, 4)}"),
                     )
@@ -401,47 +396,23 @@ class SpreadWriter:
                 for chip, sentence, _ in exchange_tables.list_grave_points(exchange):
                     shared.setdefault((chip, sentence), []).append(other)
         for (chip, sentence), partners in shared.items():
-            yield inline_text.owner_links(self.lookup.architecture, partners), chip, sentence
+            yield self._name_partners(partners), chip, sentence
 
     def list_impact_blocks(self, partner: Partner) -> Iterator[Paragraph]:
         """Say what rests on a partner: deadlines, requirements that nobody else serves, use cases, who reads from it."""
-        lookup = self.lookup
-        own = {component.id for component in self.components.get(partner.id, ())}
-        results = [result for result in (lookup.timing.chains if lookup.timing else ()) if result.deadline]
-        resting = [
-            each
-            for each in results
-            if any(
-                partner.id in element_references.list_activity_owners(self.lookup, term.activity) for term in each.terms
-            )
-        ]
-        alone = [
-            name
-            for name, servers in lookup.components_for_requirement.items()
-            if name in lookup.architecture.requirements
-            and all(set(lookup.architecture.leaves_of(server.id)) <= own for server in servers)
-        ]
-        steps = lookup.steps.by_use_case if lookup.architecture.use_cases else {}
-        touched = [
-            name
-            for name in steps
-            if any(name in lookup.steps.by_component.get(component, ()) for component in sorted(own))
-        ]
-        readers = {
-            component.id
-            for terms in self.given.get(partner.id, ())
-            for component in components_at_ends(lookup.architecture, terms.interface)[1]
-        }
-        takers = {terms.interface.pair[1] for terms in self.given.get(partner.id, ())}
+        impact = self.find_impact(partner)
+        alone = [each.requirement.id for each in impact.requirements if not each.others]
+        deadlines = count_noun(len(impact.chains) + len(impact.free_chains), "deadline")
+        use_cases = count_noun(impact.use_case_count, "use case")
+        wait = "waits" if len(impact.waiting) == 1 else "wait"
         sentences = [
-            f"{len(resting)} of {count_noun(len(results), 'deadline')}" if resting else "",
+            f"{len(impact.chains)} of {deadlines}" if impact.chains else "",
             f"{count_noun(len(alone), 'requirement')} that nobody else serves ({join_first(alone, 6)})"
             if alone
             else "",
-            f"{len(touched)} of {count_noun(len(steps), 'use case')}" if touched else "",
-            f"{count_noun(len(readers), 'component')} of {count_noun(len(takers), 'partner')} that read from it"
-            if readers
-            else "",
+            f"{len(impact.use_cases)} of {use_cases}" if impact.use_cases else "",
+            f"{count_noun(len(impact.readers), 'component')} that read from it" if impact.readers else "",
+            f"{count_noun(len(impact.waiting), 'partner')} that {wait} for it" if impact.waiting else "",
         ]
         if found := [sentence for sentence in sentences if sentence]:
             yield Paragraph(inline_text.to_inlines(f"It rests on {partner.title}: {'; '.join(found)}."))

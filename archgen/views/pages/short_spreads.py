@@ -1,4 +1,4 @@
-"""Of many partners, those that have little in a short form, so that two share a page: one table, and sentences."""
+"""Of many partners each in a short form, on a page or less: one table, and sentences."""
 
 from __future__ import annotations
 
@@ -8,28 +8,26 @@ from archgen.model.architecture import Partner
 from archgen.views import inline_text
 from archgen.views.shapes import Block, Inlines, Paragraph, Table, Text, drop_empty_columns, make_columns
 
-_MANY_PARTNERS = 12
-"""With more of them, a page for each would make a document of partners alone."""
-_MAX_FLOWS, _MAX_COMPONENTS = 12, 6
-
-
-def is_short(flow_count: int, component_count: int, partner_count: int) -> bool:
-    """Return whether one of so many partners shares a page with another one."""
-    return flow_count <= _MAX_FLOWS and component_count <= _MAX_COMPONENTS and partner_count > _MANY_PARTNERS
+MANY_PARTNERS = 12
+"""With more of them, a spread for each would make a document of partners alone."""
+MAX_SHORT_ROWS = 8
+_MAX_DEADLINES = 3
 
 
 def list_short_blocks(
     partner: Partner,
-    flow_rows: Sequence[Iterable[tuple[Inlines, ...]]],
-    deadlines: Iterable[Table],
+    sides: Iterable[tuple[str, Sequence[tuple[Inlines, ...]], str]],
+    deadline_rows: Iterable[tuple[Inlines, ...]],
     impacts: Iterable[Paragraph],
 ) -> Iterator[Block]:
-    """Yield what a partner gives and takes, two lists of rows, in one table, and in sentences what rests on it."""
-    cells = tuple(
-        ((Text(verb, strong=True),) if not at else (), *row)
-        for verb, rows in zip(("Gives", "Takes"), flow_rows, strict=True)
-        for at, row in enumerate(rows)
-    )
+    """Yield what a partner gives and takes in one table, and in sentences what rests on it.
+
+    Each side is a verb, the rows of its flows, and a sentence on those that are told together.
+    """
+    cells, remarks = [], []
+    for verb, rows, words in sides:
+        remarks += [f"{verb} {words}"] if words else []
+        cells += [((Text(verb, strong=True),) if not at else (), *row) for at, row in enumerate(rows)]
     columns = make_columns(
         ("", 0.5),
         ("What, by or for", 1.6),
@@ -42,10 +40,15 @@ def list_short_blocks(
         ("Open", 0.7),
     )
     caption = f"What {partner.title} gives and takes"
-    yield drop_empty_columns(Table(f"table:flows/{partner.id}", caption, columns, cells, numbered=False, dense=True))
-    words = inline_text.join_inlines([_phrase_deadline(row) for each in deadlines for row in each.rows], "; ")
+    yield drop_empty_columns(
+        Table(f"table:flows/{partner.id}", caption, columns, tuple(cells), numbered=False, dense=True)
+    )
+    if remarks:
+        yield Paragraph(inline_text.to_inlines(Text(" ".join((*remarks, "The workbook has each.")), muted=True)))
+    deadlines = list(map(_phrase_deadline, deadline_rows))
     for paragraph in impacts:
-        yield Paragraph((*paragraph.inlines, *((Text(" Deadlines: "), *words, Text(".")) if words else ())))
+        shares = inline_text.join_first(deadlines, _MAX_DEADLINES, "; ")
+        yield Paragraph((*paragraph.inlines, *((Text(" Deadlines: "), *shares, Text(".")) if shares else ())))
 
 
 def _phrase_deadline(row: tuple[Inlines, ...]) -> Inlines:

@@ -136,7 +136,10 @@ class PageMaker:
         blocks: list[Block] = list(make_figures(self.edition.drawings, "overview"))
         blocks += [Markdown(project.description)] if project.description else []
         facts = list(make_document_facts(self.lookup, self.edition))
-        if self.edition.revision and self.edition.changes is None:
+        if changes := self.edition.changes:
+            words = inline_text.message_to_inlines(f"{changes.document.headline}. ")
+            facts.append(("What changed", (*words, Text(f"All changes since {changes.since}", ref="page:changes"))))
+        elif self.edition.revision:
             command = Text("archgen site --since REVISION", code=True)
             facts.append(("What changed", (command, Text(" says it, here and on the page of each element"))))
         blocks.append(Facts(tuple(facts)))

@@ -6,6 +6,7 @@ Each chapter that the project chose stands here in its short form. Components ha
 from __future__ import annotations
 
 import dataclasses
+from collections import Counter
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 
 from archgen.diagnostics import Diagnostic, join_first, join_words
@@ -20,6 +21,7 @@ from archgen.views.inline_text import count_noun
 from archgen.views.lookup import Lookup
 from archgen.views.pages import dashboard, report_outline
 from archgen.views.pages.report_outline import DocumentEdition
+from archgen.views.pages.short_spreads import MANY_PARTNERS
 from archgen.views.pages.timing_chapter import make_figures
 from archgen.views.report import front_pages
 from archgen.views.report.changes_page import print_plainly, tell_changes
@@ -52,11 +54,14 @@ from archgen.views.timing.chain_waterfall import make_waterfall
 _OVERVIEW_HEIGHT = 111.0
 """Of the picture in the summary, in mm: all of that stands on one page."""
 _MAX_CHAINS = 16
-_MAX_LISTED_CHAINS = 120
+_MAX_LISTED_CHAINS = 44
+"""They fill a page."""
 _MAX_ROWS_ABOVE = 8
 """With more chains in the table of all the first one that is told begins a page."""
 _MAX_SUMMARY_CHAINS = 3
 _MAX_DECISIONS = 2
+_MAX_NAMES = 6
+"""So many partners who wait for a term are named; the others are counted."""
 _MAX_POINTS = 4
 """So many findings of one rule, to one partner, have rows of their own."""
 _MAX_NAMED_SHEETS = 250
@@ -159,8 +164,9 @@ class DeliverablePrinter:
             yield drop_empty_columns(Table(anchor, "Chains, worst first", columns, rows, numbered=False, dense=True))
 
     def _head_chains(self) -> str:
-        more = len(self.list_results()) - _MAX_SUMMARY_CHAINS
-        return "Does it react in time?" + (f" The worst first; {more} more have more room" if more > 0 else "")
+        rest = Counter(result.verdict for result in self.list_results()[_MAX_SUMMARY_CHAINS:])
+        counts = ", ".join(f"{count} more {verdict}" for verdict, count in rest.items())
+        return "Does it react in time?" + (f" The worst first; {counts}" if counts else "")
 
     def _name_largest_part(self, result: ChainResult) -> Inlines:
         if not result.terms or self.lookup.timing is None:
@@ -240,7 +246,8 @@ class DeliverablePrinter:
         )
         lead = "From what the robot senses to what it does, the worst first. The first bar ends with the deadline. Pale: waits until it is read; dark: works; grey: on a link; hatched: nobody knows."
         if len(results) > _MAX_CHAINS:
-            lead += f" Of {len(results)} chains the first {_MAX_CHAINS} are told; the workbook has all."
+            listed = f", the first {_MAX_LISTED_CHAINS} listed" if len(results) > _MAX_LISTED_CHAINS else ""
+            lead += f" Of {len(results)} chains the first {_MAX_CHAINS} are told{listed}; the workbook has all."
         blocks = (Paragraph(inline_text.to_inlines(lead)), *self.list_worst_chains("table:chains", _MAX_LISTED_CHAINS))
         yield Section("page:chains", "Chains of effect", blocks, sections, page_break=True)
 
@@ -278,8 +285,10 @@ class DeliverablePrinter:
                 (
                     inline_text.to_inlines(self._title_activity(term.activity)),
                     inline_text.to_inlines(self.name_owners(term.activity)),
-                    timing_tables.duration_cell(time),
-                    (Text("", pieces=step.pieces),),
+                    timing_tables.duration_cell(time) if time.value or not term.counted_at else (),
+                    (Text("", pieces=step.pieces),)
+                    if time.value or not term.counted_at
+                    else (Text(f"counted with {self._title_activity(term.counted_at)}", muted=True),),
                 )
             )
         columns = make_columns(("Step", 1.6), ("Whose", 0.9), ("Takes", 0.9, "right"), ("When", 3))
@@ -406,12 +415,13 @@ class DeliverablePrinter:
             for terms in exchange.interfaces:
                 given.setdefault(terms.interface.pair[0], []).append(terms)
         owed: dict[tuple[str, ...], list[tuple[Inlines, ...]]] = {}
+        limit = _MAX_NAMES // (2 if len(self.architecture.partners) > MANY_PARTNERS else 1)
         for giver, interfaces in given.items():
             for name, open_interfaces in exchange_tables.group_open_terms(interfaces).items():
                 types = list(dict.fromkeys(each.interface.type or each.title for each in open_interfaces))
                 takers = dict.fromkeys(each.interface.pair[1] for each in open_interfaces)
                 what = f"{exchange_tables.shorten_name(name)} of {count_noun(len(open_interfaces), 'interface')}: {join_first(types, 3)}"
-                waiting = inline_text.join_inlines(inline_text.partner_link(self.architecture, each) for each in takers)
+                waiting = inline_text.join_first(list(map(self._link_partner, takers)), limit)
                 row = (inline_text.to_inlines(what), (*waiting, Text(" wait" if len(takers) > 1 else " waits")), ())
                 owed.setdefault((f"partner:{giver}",), []).append(row)
         return owed

@@ -39,6 +39,7 @@ from archgen.views.timing import chain_charts, chain_status, element_timing
 
 _MAX_CHAINS = 8
 """Chains with a slide of their own; all are in the table."""
+_MAX_STEPS_BESIDE = 10
 _MAX_STEPS_BELOW = 5
 _MAX_POINTS = 3
 """Rows of one partner among the open points."""
@@ -106,6 +107,7 @@ class _SlideMaker:
         """Yield the picture of a chain beside its verdict, what rests on it and what to do; below it its steps.
 
         Below a picture of many steps is no room for them: beside it stands whose each is; how long it takes, the picture says.
+        More than fit beside it have a slide of their own.
         """
         if self.lookup.timing is None:
             return
@@ -123,13 +125,17 @@ class _SlideMaker:
         if isinstance(told, Facts) and not stands_beside:
             facts |= dict(told.rows[1:])
         lines = [Paragraph((Text(f"{name}: ", strong=True), *words)) for name, words in facts.items() if words]
-        steps = (self._list_steps(result, table, is_short=stands_beside),) if isinstance(table, Table) else ()
-        words = (Paragraph((verdict,)), *lines, *(steps if stands_beside or not pictures else ()))
+        stands_apart = bool(pictures) and len(result.terms) > _MAX_STEPS_BESIDE
+        is_short = stands_beside and not stands_apart
+        steps = (self._list_steps(result, table, is_short=is_short),) if isinstance(table, Table) else ()
+        words = (Paragraph((verdict,)), *lines, *(steps if is_short or not pictures else ()))
         if not pictures:
             yield Section(anchor, chain.title, words)
             return
         parts = (Section(f"{anchor}/picture", "", pictures), Section(f"{anchor}/words", "", words))
         yield Section(anchor, chain.title, () if stands_beside else steps, parts)
+        if stands_apart:
+            yield Section(f"{anchor}/steps", f"{chain.title}: its steps", steps)
 
     def _list_steps(self, result: ChainResult, table: Table, *, is_short: bool) -> Table:
         """Return the table of what a chain waits for, with whose each step is in place of where it is written."""

@@ -200,8 +200,13 @@ nodes:
         name: text_of(read(tmp_path / "site", f"{name}.html"))
         for name in ("components/g.eye", "nodes/eye", "components/g.brain", "nodes/brain")
     }
+    home = text_of(read(tmp_path / "site", "index.html"))
+    assert re.search(r"What changed \d+ changes? of .*\. All changes since HEAD", home), (
+        "the start page said nothing of it"
+    )
     for name in ("components/g.eye", "nodes/eye"):
         assert "port seen · qos depth: 2 depth: 5" in pages[name]
+        assert "rate 20 Hz 5 Hz" in pages[name], "a node's page says what its component's does"
         assert "What comes to it otherwise" not in pages[name]
     for name in ("components/g.brain", "nodes/brain"):
         words = "What comes to it otherwise since HEAD g.eye.seen from Giver to Taker"

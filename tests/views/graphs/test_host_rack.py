@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from dataclasses import replace
 from fractions import Fraction
 from pathlib import Path
@@ -123,3 +124,18 @@ def test_the_rack_of_a_slide_is_as_high_as_leaves_its_type_large() -> None:
     assert bottoms[1] <= 430 < bottoms[0]
     assert slide.id == "hosts_slide"
     assert {host.title for host in lookup.architecture.hosts.values()} <= set(list_words(slide))
+
+
+def test_long_titles_stay_in_their_strip_and_lose_no_figure(tmp_path: Path) -> None:
+    titled = SMALL.replace("one: {cores: 4,", "one: {title: Real-time Computer of Arm and Hand, cores: 4,").replace(
+        "box: {host: one, threads: 2}",
+        "box: {title: Head Camera and Projector Process, host: one, threads: 2}, more: {host: one}",
+    )
+    (tmp_path / "robot.yaml").write_text(titled, "utf-8")
+    for sheet in draw_host_racks(look_up(tmp_path / "robot.yaml")):
+        frame = max(bar.x + bar.width for bar in sheet.bars if bar.fill == "paper" and bar.rounded)
+        box = next(text for text in sheet.texts if text.text.startswith("■ Head"))
+        assert box.x + 4.4 * len(box.text) < frame, "text of 8 px is up to 4.4 px wide a letter: it ran over the frame"
+        assert re.search(r": 33\.4 %, 1 node(, 2 threads)?; 1 more$", box.text), "the title is cut, not the figures"
+        title = [text.text for text in sheet.texts if text.tooltip == "Real-time Computer of Arm and Hand"]
+        assert " ".join(title) == "Real-time Computer of Arm and Hand"

@@ -17,7 +17,8 @@ from archgen.products.output_options import OutputOptions
 from archgen.products.product_inputs import ProductInputs
 from archgen.products.project_views import ProjectViews, make_views
 from archgen.views.agreement.exchange_tables import gather_exchanges
-from archgen.views.pages.partner_spreads import make_partner_chapter
+from archgen.views.pages.partner_spreads import make_partner_chapter, make_spread_writer
+from archgen.views.reliance.partner_impact import find_impact, find_parts_of
 from archgen.views.report.data_sheets import make_data_sheets, number_sheets
 from archgen.views.report.deliverable import make_deliverable
 from archgen.views.report.printed_report import walk_sections
@@ -229,12 +230,52 @@ def test_of_many_partners_those_that_have_little_share_pages(tmp_path: Path) -> 
     for section in short.sections:
         assert rows[True, section.title] == rows[False, section.title] > 0, "each flow is told in both forms"
         assert len(_tables(section)) <= 2, "what flows, and what is still to be settled"
-    kinds = [{table.kind for section in chapter.sections for table in _tables(section)} for chapter in (short, whole)]
-    assert ["table:flows" in each for each in kinds] == [True, False]
+    writers = [make_spread_writer(views.lookup, folds=folds) for folds in (True, False)]
+    assert [writer and writer.is_short for writer in writers] == [True, False]
     first = "\n".join(list_texts(short.sections[0]))
     assert re.search(r"\d components in .*: Component 0\.0, ", first)
     assert re.search(
         r"It rests on Partner 0: .* Deadlines: Chain 0 \(.* are its own, deadline 1000 ms: missed\)", first
+    )
+
+
+def test_of_many_partners_that_share_much_each_has_a_page(tmp_path: Path) -> None:
+    _BENCHMARK.generate(250, tmp_path, _BENCHMARK.Amounts(partners=25, chains=50))
+    checked = pipeline.check_project(tmp_path)
+    views = make_views(checked, OutputOptions(show_history=False), undrawn_kinds=("component",), is_report_alone=True)
+    outline = make_deliverable(views.lookup, replace_frozen(views.edition, document="deliverable"))
+    for section in _find(outline, "page:partners").sections:
+        flows, owes = _tables(section)
+        assert (flows.kind, owes.kind) == ("table:flows", "table:owes")
+        assert len(flows.rows) <= 16, "eight rows of what it gives, eight of what it takes"
+        assert len(owes.rows) <= 7, "four chains, how many more, what it owes and is owed"
+        assert len("".join(list_texts(section))) < 4_000
+    first = "\n".join(list_texts(_find(outline, "page:partners").sections[0]))
+    assert re.search(r"Gives \d+ interfaces; those of one partner, and those of \d+ partners with few, are told", first)
+    assert re.search(r"Partner \d+, Partner \d+, Partner \d+ and \d+ more", first), (
+        "the last row names some, counts others"
+    )
+    assert re.search(r"Deadlines: .* and \d+ more\.", first)
+    points = _tables(_find(outline, "page:findings"))[0]
+    assert max(len(_read(row[2]).split(", ")) for row in points.rows) <= 3, "who waits is counted"
+
+
+def test_of_many_deadlines_the_worst_stand_in_a_spread_and_the_others_are_counted(tmp_path: Path) -> None:
+    _BENCHMARK.generate(80, tmp_path, _BENCHMARK.Amounts(partners=3, chains=56))
+    checked = pipeline.check_project(tmp_path)
+    views = make_views(checked, OutputOptions(show_history=False), undrawn_kinds=("component",), is_report_alone=True)
+    outline = make_deliverable(views.lookup, replace_frozen(views.edition, document="deliverable"))
+    deadlines = [each for each in _tables(_find(outline, "page:partners")) if each.kind == "table:deadlines"]
+    assert [len(each.rows) for each in deadlines] == [13, 13, 13]
+    assert {_read(each.rows[-1][0]) for each in deadlines} == {"44 more stand in the workbook"}
+    chapter = _find(outline, "page:chains")
+    assert len(next(each for each in _tables(chapter) if each.anchor == "table:chains").rows) == 44
+    assert "Of 56 chains the first 16 are told, the first 44 listed; the workbook has all." in "".join(
+        list_texts(chapter)
+    )
+    summary = "".join(list_texts(outline.sections[0]))
+    assert "The worst first; 21 more missed, 8 more not proven, 24 more met" in summary, (
+        "they were said to have more room"
     )
 
 
@@ -266,3 +307,24 @@ def test_a_part_has_the_chapters_that_a_part_can_have(views: ProjectViews) -> No
     assert "Chains of effect" not in titles
     assert "Between partners" in titles
     assert [len(each) for each in number_sheets(lookup).values()] == [1]
+
+
+def test_a_step_whose_time_is_counted_at_another_one_says_so(deliverable: Outline) -> None:
+    table = next(
+        each for each in _tables(_find(deliverable, "page:chains")) if each.anchor.endswith("missed_dose_to_mark")
+    )
+    rows = {_read(row[0]): row for row in table.rows}
+    assert _read(rows["Risk Estimator"][2]) == "", "it was called 0 ms"
+    assert _read(rows["Risk Estimator"][3]) == "counted with Situation Assessment"
+
+
+def test_what_rests_on_a_partner_is_what_archgen_impact_says(views: ProjectViews, deliverable: Outline) -> None:
+    for section in _find(deliverable, "page:partners").sections:
+        partner = views.lookup.architecture.partners[section.subject]
+        exchanges = gather_exchanges(views.lookup)
+        impact = find_impact(views.lookup, exchanges, find_parts_of(views.lookup, partner))
+        alone = [each.requirement.id for each in impact.requirements if not each.others]
+        words = next(text for text in list_texts(section) if text.startswith("It rests on"))
+        assert (f"{len(impact.readers)} components that read from it") in words, "11 stood beside 12"
+        assert f"{len(impact.chains)} of 8 deadlines" in words
+        assert f"({', '.join(alone)})" in words or not alone, "in the project's order"

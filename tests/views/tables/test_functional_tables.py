@@ -120,4 +120,6 @@ def test_a_purpose_is_the_first_sentence_with_its_marked_words_set() -> None:
         (".", False, False),
     ]
     assert sum(len(run.text) for run in describe_purpose("word " * 500)) <= 300  # in a row of a table
+    runs = describe_purpose("Turns the readings into three things:\n\n- one")
+    assert "".join(run.text for run in runs) == "Turns the readings into three things…", "it ended in a colon"
     assert inline_text.strip_marks("Takes *no* for **an** `answer`") == "Takes no for an answer"
