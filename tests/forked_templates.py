@@ -24,7 +24,7 @@ from archgen.emit import text
 # Answers each request (eight bytes, and three descriptors: the child's input, output and errors) with these bytes and the child's
 # number, and again with its status when it ended.
 _FORKING_CODE = """
-import gc, json, os, socket, sys
+import gc, marshal, os, socket, sys
 from contextlib import suppress
 from pathlib import Path
 sys.path.insert(0, sys.argv[1])
@@ -63,7 +63,7 @@ while True:
     if not request:
         break
     given = descriptors[0]
-    compile_shipped(json.loads(os.pread(given, os.fstat(given).st_size, 0)))
+    compile_shipped(marshal.loads(os.pread(given, os.fstat(given).st_size, 0)))
     gc.freeze()  # no child looks through it, which would copy it
     child = os.fork()
     if not child:
