@@ -14,8 +14,8 @@ WHOLE_NUMBERS = frozenset(
         ("archgen/emit/picture_files.py", "sum(words)"),
         ("archgen/emit/pptx/slide_drawing.py", "sum(bytes.fromhex(digits))"),
         (
-            "archgen/plugins/recordings/bag_observation.py",
-            "sum((each.stat().st_size for each in _list_regular_files(path)))",
+            "archgen/plugins/recordings/bag_messages.py",
+            "sum((each.stat().st_size for each in list_regular_files(path)))",
         ),
         ("archgen/views/timing/timing_tables.py", "sum(times.values())"),
         ("archgen/emit/graphviz/box_styles.py", "sum((width + gap for width, _ in cells))"),
