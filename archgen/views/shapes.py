@@ -412,23 +412,21 @@ def shape_to_plain(value: object) -> Any:  # noqa: ANN401 - plain data has no na
 
 
 def _to_plain(value: object, runs: dict[Text, dict[str, Any]]) -> Any:  # noqa: ANN401 - as above
-    kind = value.__class__
-    if kind in _SCALARS:
+    if value.__class__ in _SCALARS:
         return value
-    if kind is Text:
-        # A meter of 1 and one of 1.0 are equal, and are not written alike.
-        if value.meter or value.pieces:
-            return _tag_fields(value, runs)
+    # A meter of 1 and one of 1.0 are equal, and are not written alike.
+    if isinstance(value, Text) and not value.meter and not value.pieces:
         if value not in runs:
             runs[value] = _tag_fields(value, runs)
         return runs[value]
-    if kind is tuple or isinstance(value, (tuple, list)):
+    if isinstance(value, (tuple, list)):
         return [_to_plain(item, runs) for item in value]
     if isinstance(value, Mapping):
         return {str(key): _to_plain(item, runs) for key, item in value.items()}
-    if isinstance(value, (str, int)):  # an enumeration
-        return str.__str__(value) if isinstance(value, str) else int(value)
-    return _tag_fields(value, runs) if dataclasses.is_dataclass(value) and not isinstance(value, type) else value
+    if dataclasses.is_dataclass(value) and not isinstance(value, type):
+        return _tag_fields(value, runs)
+    # An enumeration is its text or its number.
+    return str.__str__(value) if isinstance(value, str) else int(value) if isinstance(value, int) else value
 
 
 _SCALARS = frozenset({str, int, float, bool, type(None)})

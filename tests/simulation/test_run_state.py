@@ -15,25 +15,23 @@ class _Counted(tuple[PlannedCallback, ...]):
     """Counts who is asked for while somebody goes through all."""
 
     __slots__ = ()
-    count = 0
+    asked_for = 0
 
     def __iter__(self) -> Iterator[PlannedCallback]:
         """Yield each."""
         for callback in super().__iter__():
-            type(self).count += 1
+            type(self).asked_for += 1
             yield callback
 
 
 def _count_callbacks(reader_count: int) -> int:
     names = [f"r{number}" for number in range(reader_count)]
     plan = build_plan(
-        system(
-            [timed("cam", 100, 1), *(event(name, 1, "cam") for name in names)], [arc("cam", name) for name in names]
-        )
+        system([timed("cam", 100, 1), *(event(name, 1, "cam") for name in names)], [arc("cam", name) for name in names])
     )
-    _Counted.count = 0
+    _Counted.asked_for = 0
     assert WireStates(replace(plan, callbacks=_Counted(plan.callbacks)), ()).keeps_order == [True] * reader_count
-    return _Counted.count
+    return _Counted.asked_for
 
 
 def test_no_wire_goes_through_all_callbacks() -> None:
