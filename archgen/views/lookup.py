@@ -4,8 +4,9 @@ them.
 
 from __future__ import annotations
 
+import functools
 from collections import defaultdict
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from typing import TypeVar
 
 from archgen.diagnostics import Diagnostic
@@ -25,6 +26,7 @@ from archgen.model.selector_keys import find_port_holder
 from archgen.model.source_repository import SourceRepository
 from archgen.model.step_connections import UseCaseSteps
 from archgen.timing.system import message_sizes
+from archgen.timing.system.timing_system import Activity
 from archgen.views.shapes import Status
 from archgen.views.timing.timing_lookup import TimingLookup
 from archgen.views.type_names import TypeTexts
@@ -339,3 +341,21 @@ def list_fields(architecture: Architecture, message: str) -> tuple[InterfaceFiel
     """Return the fields of all parts of a message; none where its definition is not at hand."""
     definition = architecture.interfaces.definitions.get(message)
     return tuple(each for part in definition.parts for each in part) if definition else ()
+
+
+def remember_views(
+    make: Callable[[Lookup, Sequence[Activity]], T],
+) -> Callable[[Lookup, Sequence[Activity]], T]:
+    """Return a function that makes what it shows of activities once: the pages of a component and of its node both show it."""
+
+    @functools.wraps(make)
+    def recall_or_make(lookup: Lookup, activities: Sequence[Activity]) -> T:
+        if lookup.timing is None:
+            return make(lookup, activities)
+        key = make.__name__, tuple(each.id for each in activities)
+        if key not in lookup.timing.remembered:
+            lookup.timing.remembered[key] = make(lookup, activities)
+        views: T = lookup.timing.remembered[key]
+        return views
+
+    return recall_or_make

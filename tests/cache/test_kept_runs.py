@@ -324,3 +324,13 @@ def test_a_run_that_fails_leaves_nothing_replaced(monkeypatch: pytest.MonkeyPatc
     keeper.stop_noting()
     assert sys.stderr is said
     assert said.buffer.getvalue() == b"no end"
+
+
+def test_what_is_loaded_while_a_run_is_noted_removes_folders_as_safely_as_ever() -> None:
+    """`shutil` looks when it is loaded whether the system can look at files below a folder that is open."""
+    code = (
+        "from archgen.__main__ import _start_keeping; import os, sys; stat = os.stat; sys.argv = ['archgen', 'check'];"
+        "_start_keeping(); assert os.stat is not stat; assert 'shutil' not in sys.modules;"
+        "import shutil; assert shutil.rmtree.avoids_symlink_attacks"
+    )
+    subprocess.run([sys.executable, "-c", code], check=True)  # noqa: S603 - our own interpreter and code

@@ -69,10 +69,10 @@ def render_workspace(
         files = [GeneratedFile(path.removeprefix("assets/"), data) for path, data in _read_assets(backend)]
     except (_AssetError, OSError) as error:
         return (), (_make_diagnostic(backend, {"error": str(error), "template": None, "line": None}),)
-    for path, data, digest, position, expected_words, offered_words, place in answer["files"]:
+    for path, data, position, expected_words, offered_words, place in answer["files"]:
         entry = backend.files[position]
         words = (tuple(expected_words), tuple(offered_words))
-        files.append(GeneratedFile(path, data, entry.executable, entry.once, *words, places.get(place, place), digest))
+        files.append(GeneratedFile(path, data, entry.executable, entry.once, *words, places.get(place, place)))
     problems = tuple(
         _make_diagnostic(backend, {"error": problem, "template": None, "line": None})
         for problem in find_path_problems(files)

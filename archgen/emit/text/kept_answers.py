@@ -77,9 +77,8 @@ def _digest_plain(value: Any) -> bytes:  # noqa: ANN401
 
 
 def encode_texts(rows: Iterable[Sequence[Any]]) -> list[Sequence[Any]]:
-    """Return the files of an answer with their bytes in place of their text, and a digest of them."""
-    encoded = ((path, str(text).encode(), rest) for path, text, *rest in rows)
-    return [(path, data, hashlib.sha256(data).hexdigest(), *rest) for path, data, rest in encoded]
+    """Return the files of an answer with their bytes in place of their text."""
+    return [(path, str(text).encode(), *rest) for path, text, *rest in rows]
 
 
 def load_files(store: FileStore, key: str) -> list[Sequence[Any]] | None:

@@ -36,6 +36,7 @@ class TemplateLimits:
 
 
 _FREE_ELEMENTS = 2_500
+"""With more components and nodes the limits grow, ten times at most."""
 _MAX_FACTOR = 10
 _MAX_MEMORY = 4_000_000_000
 

@@ -8,7 +8,7 @@ import os
 import stat
 import unicodedata
 from collections.abc import Collection, Iterable, Iterator
-from functools import lru_cache, partial
+from functools import lru_cache
 from pathlib import Path
 
 from archgen.emit.file_tree import digest_named_file, list_files_below
@@ -43,13 +43,6 @@ class GeneratedFile:
     """Words that it may use of what is generated."""
     place: str = ""
     """Where the element stands that it is made for, such as `archgen.yaml:12:3`; empty where there is none."""
-    known_digest: str = ""
-    """The digest of its bytes where somebody computed it before."""
-
-    @property
-    def digest(self) -> str:
-        """The digest of its bytes."""
-        return self.known_digest or hashlib.sha256(self.data).hexdigest()
 
 
 def fold_file_path(path: str) -> str:
@@ -87,15 +80,11 @@ def explain_bad_path(path: str) -> str:
         return "is too long a path"
     if not is_safe_path(path):
         return "is no path that every system takes"
-    return next(filter(None, map(_explain_bad_part, path.split("/"))), "")
-
-
-@lru_cache(65536)  # files of one folder have it in common
-def _explain_bad_part(part: str) -> str:
-    if len(part.encode("utf-8", "surrogatepass")) > _MAX_PART_BYTES:
+    data = path.encode("utf-8", "surrogatepass")
+    if len(data) > _MAX_PART_BYTES and any(len(part) > _MAX_PART_BYTES for part in data.split(b"/")):
         return f"has a part of more than {_MAX_PART_BYTES} bytes"
-    folded_part = fold_file_path(part)
-    if folded_part in _TOOL_FOLDERS or folded_part.startswith("git~"):
+    folded_parts = fold_file_path(path).split("/")
+    if any(part in _TOOL_FOLDERS or part.startswith("git~") for part in folded_parts):
         return "leads into a folder of another tool"
     return ""
 
@@ -144,8 +133,8 @@ class DiskReader:
         self._prefix = os.path.join(workspace, "")  # noqa: PTH118
         self._folder_obstacles: dict[str, tuple[str, str]] = {"": ("", "")}
 
-    def read(self, path: str, expected_data: bytes | None = None, expected_digest: str = "") -> DiskFile:
-        """Return what stands at a path. Where it is what is expected, its digest is known."""
+    def read(self, path: str) -> DiskFile:
+        """Return what stands at a path."""
         obstacle, obstacle_path = self._find_folder_obstacle(path.rpartition("/")[0])
         if obstacle:
             return DiskFile(obstacle=obstacle, obstacle_path=obstacle_path)
@@ -165,7 +154,7 @@ class DiskReader:
             return DiskFile(obstacle=obstacle, obstacle_path=path)
         digest = None
         if data is not None:
-            digest = expected_digest if data == expected_data else hashlib.sha256(data).hexdigest()
+            digest = hashlib.sha256(data).hexdigest()
         elif stat.S_ISREG(status.st_mode):
             digest = digest_named_file(self._prefix + path, status.st_size)
         if digest is None:
@@ -180,13 +169,12 @@ class DiskReader:
         if not _LINK_FLAG and os.path.islink(self._prefix + path):  # noqa: PTH114 - as above
             raise OSError(errno.ELOOP, "is a link", path)
         descriptor = os.open(self._prefix + path, _OPENING_FLAGS)
-        try:
-            status = os.fstat(descriptor)
-            if not stat.S_ISREG(status.st_mode) or status.st_size > _MAX_TEXT_BYTES:
-                return status, None
-            return status, b"".join(iter(partial(os.read, descriptor, status.st_size + 1), b""))
-        finally:
+        status = os.fstat(descriptor)
+        if not stat.S_ISREG(status.st_mode) or status.st_size > _MAX_TEXT_BYTES:
             os.close(descriptor)
+            return status, None
+        with open(descriptor, "rb", buffering=0) as stream:  # noqa: PTH123 - as above
+            return status, stream.read()
 
     def read_data(self, path: str) -> bytes:
         """Return the bytes of a file that is there."""

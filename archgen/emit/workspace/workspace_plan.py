@@ -174,16 +174,14 @@ class _Planner:
     removals: list[str] = field(default_factory=list)
     vanished: list[str] = field(default_factory=list)
     entries: dict[str, RecordedFile] = field(default_factory=dict)
+    known_digests: dict[str, set[str]] = field(default_factory=lambda: defaultdict(set))
     _outlived: dict[str, RecordedFile] = field(default_factory=dict)
     """Files of the user's own that nothing needs any more."""
 
-    @cached_property
-    def _known_digests(self) -> defaultdict[str, set[str]]:
-        """What archgen wrote, by folded path: where case is ignored, `Node.py` is what stands at `node.py`."""
-        known_digests = defaultdict[str, set[str]](set)
+    def __post_init__(self) -> None:
         for path, entry in self.old_record.files.items():
-            known_digests[fold_file_path(path)] |= set() if entry.is_own else entry.digests
-        return known_digests
+            # By folded path: where case is ignored, `Node.py` is what stands at `node.py`.
+            self.known_digests[fold_file_path(path)] |= set() if entry.is_own else entry.digests
 
     def plan_unwanted(self, path: str, entry: RecordedFile) -> None:
         """Plan what happens to a file that this run does not make."""
@@ -209,8 +207,8 @@ class _Planner:
     def plan_wanted(self, file: GeneratedFile) -> None:
         """Plan what happens at the path of a file that this run makes."""
         entry = self.old_record.files.get(file.path)
-        digest = file.digest
-        on_disk = self._ignore_leaving(self.disk.read(file.path, file.data, digest), file.path)
+        on_disk = self._ignore_leaving(self.disk.read(file.path), file.path)
+        digest = hashlib.sha256(file.data).hexdigest()
         if on_disk.obstacle:
             self._keep(file, entry, "blocked", f"`{on_disk.obstacle_path}` {on_disk.obstacle}")
         elif not on_disk.exists:
@@ -222,7 +220,7 @@ class _Planner:
             self._keep_own(file, entry, digest, on_disk)
         elif on_disk.has_digest({digest}):
             self._keep_same(file, entry, digest, on_disk)
-        elif on_disk.has_digest(self._known_digests[fold_file_path(file.path)]) or (
+        elif on_disk.has_digest(self.known_digests[fold_file_path(file.path)]) or (
             entry and file.path in self.choices.overwritten
         ):
             self._write(file, entry, digest, on_disk, "changed")

@@ -45,8 +45,9 @@ class ReadingLimits:
 
     @classmethod
     def for_size(cls, size: int) -> ReadingLimits:
-        """Return the limits for a bag of so many bytes. An honest one takes a tenth of them, and less."""
-        return cls(7 + size // 500_000, 900_000_000, 900_000_000 + 20 * size)
+        """Return the limits for a bag of so many bytes: 400,000 messages of 52 bytes take 1 % of the time, packed by Zstandard 6 %."""
+        # Of ROS 1 all messages are indexed before the first one is read.
+        return cls(7 + size // 500_000, 900_000_000 + size, 900_000_000 + 20 * size)
 
 
 def measure_topics(path: Path, distro: str, limits: ReadingLimits | None = None) -> dict[str, RecordedTopic]:

@@ -5,11 +5,9 @@ Site, cards and documents read the same rows.
 
 from __future__ import annotations
 
-import functools
-from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from fractions import Fraction
 from types import MappingProxyType
-from typing import TypeVar
 
 from archgen.diagnostics import join_words, order_naturally
 from archgen.frozen import NamedTuple, replace
@@ -24,12 +22,11 @@ from archgen.timing.figures.timing_values import TimingValue, sum_bounds, sum_fr
 from archgen.timing.rates.link_traffic import find_sending_rate
 from archgen.timing.system.timing_system import Activity
 from archgen.views import element_readers, element_references, inline_text
-from archgen.views.lookup import Lookup
+from archgen.views.lookup import Lookup, remember_views
 from archgen.views.shapes import Block, Bullets, Inlines, Markdown, Paragraph, Section, Table, Text, make_columns
 from archgen.views.timing import chain_status, timing_tables, value_format
 from archgen.views.timing.timing_lookup import TimingLookup
 
-_Views = TypeVar("_Views")
 _PARTNER_VERBS = (("gives", "takes"), ("calls", "answers"))
 """What another partner does with what comes in and goes out: with data, and with calls."""
 
@@ -177,31 +174,13 @@ def _link_chain(lookup: Lookup, chain: ChainResult) -> Inlines:
     return (Text(title, ref=f"chain:{chain.id}"), Text(" "), *timing_tables.deadline_cell(chain))
 
 
-def _remember_views(
-    make: Callable[[Lookup, Sequence[Activity]], _Views],
-) -> Callable[[Lookup, Sequence[Activity]], _Views]:
-    """Return a function that makes what it shows of activities once: the pages of a component and of its node both show it."""
-
-    @functools.wraps(make)
-    def recall_or_make(lookup: Lookup, activities: Sequence[Activity]) -> _Views:
-        if lookup.timing is None:
-            return make(lookup, activities)
-        key = make.__name__, tuple(each.id for each in activities)
-        if key not in lookup.timing.remembered:
-            lookup.timing.remembered[key] = make(lookup, activities)
-        views: _Views = lookup.timing.remembered[key]
-        return views
-
-    return recall_or_make
-
-
 def make_flow_blocks(lookup: Lookup, element_id: str, title: str, activities: Sequence[Activity]) -> Iterator[Block]:
     """Yield the tables of what an element takes in and gives out."""
     for table in _make_flow_tables(lookup, activities):
         yield replace(table, anchor=f"{table.anchor}/{element_id}", caption=f"{title} {table.caption}")
 
 
-@_remember_views
+@remember_views
 def _make_flow_tables(lookup: Lookup, activities: Sequence[Activity]) -> list[Table]:
     """Return the tables of what activities take in and give out, without the element in anchor and caption."""
     tables = zip(("in", "out"), ("takes in", "gives out"), list_flow_rows(lookup, activities), strict=True)
@@ -308,7 +287,7 @@ def _describe_unjudged(lookup: Lookup, way: UnjudgedWay) -> str:
     return f"`{port}`: {duration}{most} from what `{first}` senses until `{last}` has acted on it"
 
 
-@_remember_views
+@remember_views
 def make_unjudged_blocks(lookup: Lookup, activities: Sequence[Activity]) -> tuple[Block, ...]:
     """Return what no chain says of the inputs of an element, and the lines that would make a chain of each."""
     found = list_unjudged_lines(lookup, activities)
@@ -433,7 +412,7 @@ def list_time_left(lookup: Lookup, activities: Sequence[Activity]) -> Iterator[I
             yield (*name, Text("nothing that is written limits it"))
 
 
-@_remember_views
+@remember_views
 def _list_exchanges(lookup: Lookup, activities: Sequence[Activity]) -> dict[str, Inlines]:
     """Return by other partner, in words, what passes between him and an element."""
     architecture = lookup.architecture
